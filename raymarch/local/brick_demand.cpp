@@ -94,31 +94,48 @@ bool passes_beside(const SecondOrder& surface, const Box& box, double margin, do
   return std::abs(rest) > towards + turn * turn;
 }
 
+/// Points of a lattice of so many to a side: first those that halve it, then the others.
+constexpr int kCreaseSide = 5;
+constexpr size_t kCreasePoints = kCreaseSide * kCreaseSide * kCreaseSide, kFirstCreasePoints = 27;
+std::array<glm::ivec3, kCreasePoints> crease_places() {
+  std::array<glm::ivec3, kCreasePoints> places;
+  size_t first = 0, other = kFirstCreasePoints;
+  for (int k = 0; k < static_cast<int>(kCreasePoints); ++k) {
+    const glm::ivec3 place(k / (kCreaseSide * kCreaseSide), k / kCreaseSide % kCreaseSide, k % kCreaseSide);
+    const bool halves = ((place.x | place.y | place.z) & 1) == 0;
+    places[halves ? first++ : other++] = place;
+  }
+  return places;
+}
+
 /// Of a box with creases: whether normals of the surface in it and a little beside lie on both sides of a border's N.V, or near it.
 bool creases_hold_border(FieldEvaluator& evaluator, const Box& box, const Camera& camera, const std::vector<double>& thresholds) {
-  constexpr int kSide = 5;
   constexpr double kMargin = 0.02, kBeside = 0.25;
+  static const std::array<glm::ivec3, kCreasePoints> places = crease_places();
   const Box reach = dilate(box, kBeside * box.longest_side());
-  const double spacing = reach.longest_side() / (kSide - 1);
-  std::array<glm::dvec3, kSide * kSide * kSide> points, gradients;
-  std::array<double, points.size()> values;
-  for (int k = 0; k < static_cast<int>(points.size()); ++k) {
-    const glm::dvec3 part(k / (kSide * kSide), k / kSide % kSide, k % kSide);
-    points[static_cast<size_t>(k)] = reach.lower + part / double{kSide - 1} * reach.size();
-  }
-  evaluator.gradients(points, values, gradients);
+  const double spacing = reach.longest_side() / (kCreaseSide - 1);
+  std::array<glm::dvec3, kCreasePoints> points, gradients;
+  std::array<double, kCreasePoints> values;
+  for (size_t k = 0; k < kCreasePoints; ++k) points[k] = reach.lower + glm::dvec3(places[k]) / double{kCreaseSide - 1} * reach.size();
   double least = 1.0, most = -1.0;
-  for (size_t k = 0; k < points.size(); ++k) {
-    const double slope = glm::length(gradients[k]);
-    if (!(slope > 0.0)) return true;
-    // Every point of the surface in the box has one of the points within half a cube's diagonal, 0.87 spacings; twice that, since larger
-    // voxels round off a crease that lies beside it.
-    if (std::abs(values[k]) > std::sqrt(3.0) * spacing * slope) continue;
-    const double facing = glm::dot(gradients[k], view_vector(camera, points[k])) / slope;
-    least = std::min(least, facing), most = std::max(most, facing);
-  }
   const auto holds = [&](double value) { return least < value + kMargin && most > value - kMargin; };
-  return holds(0.0) || std::any_of(thresholds.begin(), thresholds.end(), holds);
+  // More points can only take least and most farther apart: mostly the first ones tell that there is a border.
+  for (size_t from = 0, end = kFirstCreasePoints; from < kCreasePoints; from = end, end = kCreasePoints) {
+    const size_t count = end - from;
+    evaluator.gradients(std::span(points).subspan(from, count), std::span(values).subspan(from, count),
+                        std::span(gradients).subspan(from, count));
+    for (size_t k = from; k < end; ++k) {
+      const double slope = glm::length(gradients[k]);
+      if (!(slope > 0.0)) return true;
+      // Every point of the surface in the box has one of the points within half a cube's diagonal, 0.87 spacings; twice that, since larger
+      // voxels round off a crease that lies beside it.
+      if (std::abs(values[k]) > std::sqrt(3.0) * spacing * slope) continue;
+      const double facing = glm::dot(gradients[k], view_vector(camera, points[k])) / slope;
+      least = std::min(least, facing), most = std::max(most, facing);
+    }
+    if (holds(0.0) || std::any_of(thresholds.begin(), thresholds.end(), holds)) return true;
+  }
+  return false;
 }
 
 /// What voxels of that size are predicted to move the border by in a brick, world units as the picture foreshortens them at most.

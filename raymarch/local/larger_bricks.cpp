@@ -62,7 +62,7 @@ Larger larger_of(const LevelNodes& nodes, int step, const std::vector<LocalBrick
   return larger;
 }
 
-LargerBeside::LargerBeside(const Larger& larger, const glm::ivec3& origin) : larger_(larger) {
+LargerBeside::LargerBeside(const Larger& larger, const glm::ivec3& origin) : larger_(larger), first_(origin >> larger.step) {
   for (unsigned k = 0; k < 8; ++k) {
     // Those of the block itself, and before it along the axes of k: a node on a face between two belongs to both.
     const glm::ivec3 place = (origin >> 3) - glm::ivec3(k & 1, k >> 1 & 1, k >> 2), part = place & ((1 << larger.step) - 1);
@@ -85,7 +85,23 @@ std::uint64_t LargerBeside::near_nodes(size_t word) const {
          if_near(6, kFirstRow & kFirstColumn);
 }
 
+void LargerBeside::load_values() {
+  const NodeBlock* last = nullptr;
+  const int count = (8 >> larger_.step) + 1;
+  for (int x = 0; x < count; ++x)
+    for (int y = 0; y < count; ++y)
+      for (int z = 0; z < count; ++z) {
+        const glm::ivec3 node = first_ + glm::ivec3(x, y, z);
+        const NodeBlock* const block = larger_.nodes->find(block_of(node), last);
+        const size_t n = place_in_block(node);
+        // Nobody asks for what no brick has.
+        values_[at(node)] = block && block->is_known(n) ? static_cast<double>(larger_.nodes->value_of(block->steps[n])) : 0.0;
+      }
+  is_loaded_ = true;
+}
+
 double LargerBeside::interpolated(const glm::ivec3& node) {
+  if (!is_loaded_) load_values();
   const int times = 1 << larger_.step;
   const glm::ivec3 part = node & (times - 1);
   const double scale = 1.0 / static_cast<double>(times * times * times);
@@ -94,10 +110,8 @@ double LargerBeside::interpolated(const glm::ivec3& node) {
     const glm::ivec3 side(k & 1, k >> 1 & 1, k >> 2), weights = side * part + (1 - side) * (times - part);
     const int weight = weights.x * weights.y * weights.z;
     if (weight == 0) continue;
-    const glm::ivec3 at = (node >> larger_.step) + side;
     // All are powers of two: exact.
-    sum +=
-        scale * weight * static_cast<double>(larger_.nodes->value_of(larger_.nodes->find(block_of(at), last_)->steps[place_in_block(at)]));
+    sum += scale * weight * values_[at((node >> larger_.step) + side)];
   }
   return sum;
 }

@@ -34,9 +34,22 @@ class LargerBeside {
   /// True where the node lies on cells that are wholly on the other side of their surface than `inside` says.
   bool on_other_side(const glm::ivec3& node, bool inside) const { return ((inside ? outside_ : inside_) >> before(node) & 1) != 0; }
 
+  /// False: what the surface tells stands wherever nodes are not near.
+  bool may_be_on_other_side() const { return (inside_ | outside_) != 0; }
+
   double interpolated(const glm::ivec3& node);
 
  private:
+  /// Larger nodes about the block along each axis: five of twice the size.
+  static constexpr int kMostLargerNodes = 5;
+
+  void load_values();
+  size_t at(const glm::ivec3& larger) const {
+    const glm::ivec3 from = larger - first_;
+    const int place = (from.x * kMostLargerNodes + from.y) * kMostLargerNodes + from.z;
+    return static_cast<size_t>(place);
+  }
+
   /// The axes along which the node lies on the block's first face.
   static unsigned before(const glm::ivec3& node) {
     return ((node.x & 7) == 0 ? 1u : 0u) | ((node.y & 7) == 0 ? 2u : 0u) | ((node.z & 7) == 0 ? 4u : 0u);
@@ -45,8 +58,10 @@ class LargerBeside {
   static constexpr unsigned kTouchedFrom[8] = {0xff, 0xaa, 0xcc, 0x88, 0xf0, 0xa0, 0xc0, 0x80};
 
   const Larger& larger_;
+  glm::ivec3 first_{0};                           ///< The larger node at the block's first one.
   unsigned near_ = 0, inside_ = 0, outside_ = 0;  ///< Bits as in kTouchedFrom.
-  const NodeBlock* last_ = nullptr;
+  bool is_loaded_ = false;
+  std::array<double, size_t{kMostLargerNodes} * kMostLargerNodes * kMostLargerNodes> values_;  ///< Of the larger nodes, once loaded.
 };
 
 }  // namespace limn

@@ -87,7 +87,7 @@ void evaluate_field(DistanceEvaluator& distance, NodeBlock& block, const NodeMea
   signed_distances(distance, asked.points, half_width, distances);
   std::array<float, kMostLanePoints> values;
   for (size_t k = 0; k < asked.points.count; ++k) values[k] = static_cast<float>(std::clamp(distances[k], -half_width, half_width));
-  if (beside)
+  if (beside && beside->may_be_on_other_side())
     for (size_t k = 0; k < asked.points.count; ++k)
       values[k] = static_cast<float>(on_its_side(static_cast<double>(values[k]), node_of(block, asked.numbers[k]), *beside));
   std::array<std::int16_t, kMostLanePoints> steps;

@@ -10,11 +10,6 @@
 namespace limn {
 namespace {
 
-/// Index of the pixel that showed pixel i's piece of surface; below 0 where none did.
-std::int64_t source(const Image<std::int32_t>& before, size_t i) {
-  return before.pixels.empty() ? static_cast<std::int64_t>(i) : std::int64_t{before.pixels[i]};
-}
-
 constexpr size_t kGrain = size_t{1} << 14;  // pixels
 
 std::int64_t border_pixels(const Image<std::uint8_t>& ink) {
@@ -47,19 +42,25 @@ FrameFlips count_flips(const InkFrame& own, const InkFrame& reference, FlipHisto
   if (!history.ink.pixels.empty()) {
     LIMN_CHECK(history.ink.size() == own.ink.size());
     const auto of_pixels = [&](const IndexRange<size_t>& part, FrameFlips counted) {
-      for (size_t i = part.first; i < part.last; ++i) {
-        if (const std::int64_t k = source(reference.before, i); k >= 0) {
-          counted.reference_flips += now.reference.pixels[i] != history.reference.pixels[static_cast<size_t>(k)];
-        }
-        const std::int64_t k = source(own.before, i);
-        if (k < 0) continue;
-        const auto was = static_cast<size_t>(k);
+      const auto reference_settled = [&](size_t i, size_t was) {
+        return same_run(&now.reference.pixels[i], &history.reference.pixels[was]);
+      };
+      for_each_unsettled(reference.before, part, reference_settled, [&](size_t i, std::int64_t was) {
+        if (was >= 0) counted.reference_flips += now.reference.pixels[i] != history.reference.pixels[static_cast<size_t>(was)];
+      });
+      const auto own_settled = [&](size_t i, size_t was) {
+        static constexpr std::uint8_t kNone[kRunPixels] = {};
+        return same_run(&now.ink.pixels[i], &history.ink.pixels[was]) && same_run(&history.owes.pixels[was], kNone);
+      };
+      for_each_unsettled(own.before, part, own_settled, [&](size_t i, std::int64_t place) {
+        if (place < 0) return;
+        const auto was = static_cast<size_t>(place);
         const bool flip = now.ink.pixels[i] != history.ink.pixels[was];
         const bool owes = history.owes.pixels[was] != 0 && now.reference.pixels[i] == history.reference.pixels[was];
         counted.flips += flip;
         counted.beyond += flip && (owes || now.ink.pixels[i] != now.reference.pixels[i]);
         now.owes.pixels[i] = flip || owes;
-      }
+      });
       return counted;
     };
     count = parallel_reduce(own.ink.size(), kGrain, FrameFlips{}, of_pixels, sum_of);

@@ -46,33 +46,54 @@ HWY_INLINE Vectors Plus(const Vectors& a, const Vectors& b) { return {hn::Add(a.
 HWY_INLINE Vectors Minus(const Vectors& a, const Vectors& b) { return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)}; }
 HWY_INLINE Vectors Times(const Vectors& a, VD by) { return {hn::Mul(a.x, by), hn::Mul(a.y, by), hn::Mul(a.z, by)}; }
 HWY_INLINE VD Dot(const Vectors& a, const Vectors& b) { return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z)); }
-HWY_INLINE Vectors Turned(const glm::dmat3& m, const Vectors& v) {
-  return Plus(Plus(Times(Of(m[0]), v.x), Times(Of(m[1]), v.y)), Times(Of(m[2]), v.z));
+
+/// What a pixel takes at a depth, world units.
+HWY_INLINE VD UnitsPerPixel(const Camera& camera, VD depth) {
+  return camera.projection == Projection::orthographic ? Of(1.0 / camera.pixels_per_unit) : hn::Mul(depth, Of(1.0 / camera.focal_px));
 }
 
 /// The surface's points where pixels saw it. World positions are kept as floats; far from the origin the depth is what still has its
 /// digits.
 HWY_INLINE Vectors PointsAt(const Frame& frame, VD column, VD row, VD depth) {
   const Camera& camera = frame.camera;
+  const glm::dmat3& axes = camera.world_from_camera;
   const VD x = hn::Sub(hn::Add(column, Of(frame.seen.sample.x)), Of(0.5 * camera.width_px)),
            y = hn::Sub(Of(0.5 * camera.height_px), hn::Add(row, Of(frame.seen.sample.y)));
-  const Vectors back = Of(camera.world_from_camera[2]);
-  Vectors origin = Of(camera.eye), direction = Minus(Of(glm::dvec3(0.0)), back);
-  if (camera.projection == Projection::orthographic) {
-    const VD scale = Of(camera.pixels_per_unit);
-    origin = Plus(origin, Turned(camera.world_from_camera, {hn::Div(x, scale), hn::Div(y, scale), Of(0.0)}));
-  } else {
-    const Vectors way{x, y, Of(-camera.focal_px)};
-    direction = Turned(camera.world_from_camera, Times(way, hn::Div(Of(1.0), hn::Sqrt(Dot(way, way)))));
-  }
-  return Plus(origin, Times(direction, hn::Div(depth, hn::Neg(Dot(direction, back)))));
+  const VD units = UnitsPerPixel(camera, depth);
+  const Vectors across = Plus(Times(Of(axes[0]), hn::Mul(x, units)), Times(Of(axes[1]), hn::Mul(y, units)));
+  return Plus(Of(camera.eye), Minus(across, Times(Of(axes[2]), depth)));
 }
 
-HWY_INLINE VD GatherDoubles(const float* from, VI index) { return hn::PromoteTo(D(), hn::GatherIndex(F(), from, index)); }
+HWY_INLINE VD Doubles(hn::Vec<F> v) { return hn::PromoteTo(D(), v); }
 
-HWY_INLINE Vectors GatherNormals(const glm::vec3* from, VI index) {
-  const VI first = hn::Mul(index, hn::Set(I(), 3));
-  return {GatherDoubles(&from->x, first), GatherDoubles(&from->y, first), GatherDoubles(&from->z, first)};
+/// What the frame before has at pixels.
+struct SeenBefore {
+  VI id;
+  VD depth;
+  Vectors normal;
+};
+
+HWY_INLINE Vectors NormalsFrom(const glm::vec3* from) {
+  hn::Vec<F> x, y, z;
+  hn::LoadInterleaved3(F(), &from->x, x, y, z);
+  return {Doubles(x), Doubles(y), Doubles(z)};
+}
+
+/// Where nothing moves by much, pixels side by side were side by side before: loads take a fraction of what gathers take.
+HWY_INLINE SeenBefore SeenAt(const GBuffer& seen, VI pixel) {
+  const I i32;
+  const std::int32_t first = hn::GetLane(pixel);
+  if (hn::AllTrue(i32, hn::Eq(pixel, hn::Iota(i32, first)))) {
+    const auto at = static_cast<size_t>(first);
+    return {hn::LoadU(i32, seen.id.pixels.data() + at), Doubles(hn::LoadU(F(), seen.depth.pixels.data() + at)),
+            NormalsFrom(seen.normal.pixels.data() + at)};
+  }
+  const VI of_normal = hn::Mul(pixel, hn::Set(i32, 3));
+  const auto gathered = [](const float* from, VI index) { return Doubles(hn::GatherIndex(F(), from, index)); };
+  const glm::vec3* const normals = seen.normal.pixels.data();
+  return {hn::GatherIndex(i32, seen.id.pixels.data(), pixel),
+          gathered(seen.depth.pixels.data(), pixel),
+          {gathered(&normals->x, of_normal), gathered(&normals->y, of_normal), gathered(&normals->z, of_normal)}};
 }
 
 /// Pixels side by side: of this frame, and the objects that the frame before has at the same places.
@@ -83,9 +104,9 @@ struct PixelRow {
   const std::int32_t* id_before;
 };
 
-/// Where the camera before saw points: pixels, rounded, and the pixels that a world unit takes.
+/// Where the camera before saw points: pixels, rounded, and the world units that one takes there.
 struct ImageBefore {
-  VD x, y, scale;
+  VD x, y, units;
   MD inside;
 };
 
@@ -95,10 +116,11 @@ HWY_INLINE ImageBefore Project(const Frame& before, const Vectors& points) {
   const Vectors away = Minus(points, Of(camera.eye));
   const VD z = hn::Neg(Dot(away, Of(axes[2]))), zero = Of(0.0);
   ImageBefore image;
-  image.scale = camera.projection == Projection::orthographic ? Of(camera.pixels_per_unit) : hn::Div(Of(camera.focal_px), z);
+  image.units = UnitsPerPixel(camera, z);
+  const VD scale = camera.projection == Projection::orthographic ? Of(camera.pixels_per_unit) : hn::Div(Of(camera.focal_px), z);
   const auto pixel_of = [](VD place, double sample) { return hn::Floor(hn::Add(hn::Sub(place, Of(sample)), Of(0.5))); };
-  image.x = pixel_of(hn::Add(Of(0.5 * camera.width_px), hn::Mul(image.scale, Dot(away, Of(axes[0])))), before.seen.sample.x);
-  image.y = pixel_of(hn::Sub(Of(0.5 * camera.height_px), hn::Mul(image.scale, Dot(away, Of(axes[1])))), before.seen.sample.y);
+  image.x = pixel_of(hn::Add(Of(0.5 * camera.width_px), hn::Mul(scale, Dot(away, Of(axes[0])))), before.seen.sample.x);
+  image.y = pixel_of(hn::Sub(Of(0.5 * camera.height_px), hn::Mul(scale, Dot(away, Of(axes[1])))), before.seen.sample.y);
   image.inside = hn::And(hn::And(hn::Gt(z, zero), hn::And(hn::Ge(image.x, zero), hn::Ge(image.y, zero))),
                          hn::And(hn::Lt(image.x, Of(before.seen.width)), hn::Lt(image.y, Of(before.seen.height))));
   return image;
@@ -116,13 +138,14 @@ HWY_INLINE VI BeforePacket(const Frame& now, const Frame& before, const PixelRow
   const ImageBefore image = Project(before, points);
   const VD place = hn::Add(hn::Mul(image.y, Of(before.seen.width)), image.x);
   const VI there = hn::DemoteTo(i32, hn::IfThenElseZero(image.inside, place));
-  const MD same_object = hn::Eq(hn::PromoteTo(D(), hn::GatherIndex(i32, before.seen.id.pixels.data(), there)), hn::PromoteTo(D(), id));
-  const Vectors normal = GatherNormals(pixels.normal, hn::Iota(i32, 0)), other = GatherNormals(before.seen.normal.pixels.data(), there);
-  const MD turns = hn::Lt(Dot(normal, other), Of(std::cos(kSameNormal)));
+  const SeenBefore other = SeenAt(before.seen, there);
+  const MD same_object = hn::Eq(hn::PromoteTo(D(), other.id), hn::PromoteTo(D(), id));
+  const Vectors normal = NormalsFrom(pixels.normal);
+  const MD turns = hn::Lt(Dot(normal, other.normal), Of(std::cos(kSameNormal)));
   // Where normals turn by less than an angle, the way between two points leaves the tangent plane by less than that. A pixel on top, for
   // ways so short that they are the depths' rounding.
-  const Vectors way = Minus(PointsAt(before, image.x, image.y, GatherDoubles(before.seen.depth.pixels.data(), there)), points);
-  const VD length = hn::Add(hn::Sqrt(Dot(way, way)), hn::Div(Of(1.0), image.scale));
+  const Vectors way = Minus(PointsAt(before, image.x, image.y, other.depth), points);
+  const VD length = hn::Add(hn::Sqrt(Dot(way, way)), image.units);
   const MD leaves = hn::Gt(hn::Abs(Dot(way, normal)), hn::Mul(Of(std::sin(kSameNormal)), length));
   const MD followed = hn::AndNot(hn::Or(turns, leaves), hn::And(image.inside, same_object));
   return hn::IfThenElse(missed, of_missed, hn::DemoteTo(i32, hn::IfThenElse(followed, place, Of(kNone))));

@@ -50,8 +50,8 @@ std::vector<MethodCall> without_hysteresis(BorderSpec spec, const SceneInput& in
 FlipPlaces flip_places(const Image<float>& n_dot_v_now, const Image<std::int32_t>& pixels_before, const Image<std::uint8_t>& before,
                        const Image<std::uint8_t>& now) {
   const auto of_pixels = [&](const IndexRange<size_t>& part, FlipPlaces places) {
-    for (size_t i = part.first; i < part.last; ++i) {
-      const std::int32_t was = pixels_before.pixels[i];
+    const auto settled = [&](size_t i, size_t was) { return same_run(&now.pixels[i], &before.pixels[was]); };
+    for_each_unsettled(pixels_before, part, settled, [&](size_t i, std::int64_t was) {
       if (was < 0) {
         ++places.unseen;
       } else if (before.pixels[static_cast<size_t>(was)] != now.pixels[i]) {
@@ -59,7 +59,7 @@ FlipPlaces flip_places(const Image<float>& n_dot_v_now, const Image<std::int32_t
         places.lowest_n_dot_v = std::min(places.lowest_n_dot_v, n_dot_v);
         places.highest_n_dot_v = std::max(places.highest_n_dot_v, n_dot_v);
       }
-    }
+    });
     return places;
   };
   const auto joined_places = [](const FlipPlaces& a, const FlipPlaces& b) {

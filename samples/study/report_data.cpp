@@ -8,8 +8,10 @@
 #include <cmath>
 #include <set>
 #include <tuple>
+#include <unordered_map>
 
 #include "samples/experiment/metric_values.h"
+#include "samples/study/row_groups.h"
 #include "samples/study/series_styles.h"
 
 namespace limn {
@@ -38,54 +40,21 @@ size_t rank_of(const std::string& name) {
   return kRoles.size();
 }
 
-std::string spaced(std::string text) {
-  std::replace(text.begin(), text.end(), '_', ' ');
-  return text;
-}
-
-// Those that tell one drawing from another, and the threshold: what is the same everywhere is in the call.
-struct DrawingNames {
-  std::map<std::string, std::map<std::string, std::set<std::string>>> values{};  ///< By method and parameter.
-
-  explicit DrawingNames(const std::vector<const StudyRow*>& rows) {
-    for (const StudyRow* row : rows) {
-      for (const auto& [name, value] : row->method_parameters) values[row->method][name].insert(value);
-    }
-  }
-  std::string parameters(const StudyRow& row) const {
-    std::string text;
-    for (const auto& [name, value] : row.method_parameters) {
-      if (name != "threshold" && values.at(row.method).at(name).size() < 2) continue;
-      text += (text.empty() ? "" : ", ") + spaced(name) + " " + value;
-    }
-    return text;
-  }
-};
-
 // Places in the picture are neither errors nor sizes.
 bool is_position(const std::string& name) { return name.ends_with("_x") || name.ends_with("_y"); }
 
-bool row_less(const StudyRow& a, const StudyRow& b) {
-  const auto head = [](const StudyRow& row) {
-    return std::tie(row.surface, row.surface_parameters, row.method, row.method_parameters, row.view, row.key, row.metric);
-  };
-  if (head(a) != head(b)) return head(a) < head(b);
-  // Two rows of one metric are the same row written twice, its times aside.
-  return std::make_tuple(a.failed, a.time_ms(), a.bytes) < std::make_tuple(b.failed, b.time_ms(), b.bytes);
-}
-
 struct Collector {
   ReportData& data;
-  DrawingNames names;
+  const GroupedRows& grouped;
   std::map<std::tuple<std::string, std::string>, size_t> models{};  ///< By series and resolution.
   std::map<std::string, size_t> series{};
   std::map<std::string, size_t> drawings{};
-  std::map<std::string, size_t> cells{};
+  std::unordered_map<std::string, size_t> cells{};
   std::map<std::string, std::string> units{};
 
-  void add_models(const StudyHead& head, const std::vector<const StudyRow*>& rows) {
+  void add_models(const StudyHead& head) {
     std::set<std::string> seen;
-    for (const StudyRow* row : rows) seen.insert(series_of(*row));
+    for (const RowGroup& group : grouped.groups) seen.insert(group.series);
     for (const std::string& name : head.surfaces) {
       if (seen.erase(name) > 0) data.series.push_back(name);
     }
@@ -95,13 +64,14 @@ struct Collector {
     for (size_t i = 0; i < data.series.size(); ++i) series[data.series[i]] = i;
     data.styles = styles_of(data.series);
 
-    for (const StudyRow* row : rows) {
-      const auto [place, is_new] = models.try_emplace({series_of(*row), resolution_text(*row)}, data.models.size());
-      if (is_new) {
-        data.models.push_back({series.at(series_of(*row)), resolution_text(*row), row->resolution, row->surface, row->surface_parameters});
-      } else if (std::isnan(data.models[place->second].resolution)) {
-        data.models[place->second].resolution = row->resolution;  // a failed cell may not know it
-      }
+    const RowGroup* last = nullptr;
+    size_t model = 0;
+    for (const GroupedRow& one : grouped.rows) {
+      const RowGroup& group = grouped.groups[one.group];
+      const StudyRow& row = *one.row;
+      if (&group != last) model = model_of(group, row);
+      last = &group;
+      if (std::isnan(data.models[model].resolution)) data.models[model].resolution = row.resolution;  // a failed cell may not know it
     }
     std::stable_sort(data.models.begin(), data.models.end(), [](const ReportModel& a, const ReportModel& b) {
       if (a.series != b.series) return a.series < b.series;
@@ -112,25 +82,27 @@ struct Collector {
     }
   }
 
-  void add_drawings(const std::vector<const StudyRow*>& rows) {
+  /// The model's place, which is a new one where it has none.
+  size_t model_of(const RowGroup& group, const StudyRow& row) {
+    const auto [place, is_new] = models.try_emplace({group.series, group.resolution}, data.models.size());
+    if (is_new) data.models.push_back({series.at(group.series), group.resolution, row.resolution, row.surface, row.surface_parameters});
+    return place->second;
+  }
+
+  void add_drawings() {
     std::map<std::string, ReportDrawing> found;
-    for (const StudyRow* row : rows) {
-      ReportDrawing drawing{row->method, names.parameters(*row)};
-      const auto threshold = row->method_parameters.find("threshold");
-      if (threshold != row->method_parameters.end()) drawing.threshold = std::strtod(threshold->second.c_str(), nullptr);
-      found.try_emplace(drawing.title(), drawing);
-    }
+    for (const RowGroup& group : grouped.groups) found.try_emplace(group.drawing.title(), group.drawing);
     for (const auto& [title, drawing] : found) data.drawings.push_back(drawing);
     std::stable_sort(data.drawings.begin(), data.drawings.end(),
                      [](const ReportDrawing& a, const ReportDrawing& b) { return natural_less(a.title(), b.title()); });
     for (size_t i = 0; i < data.drawings.size(); ++i) drawings[data.drawings[i].title()] = i;
   }
 
-  void add_cell_row(const StudyRow& row) {
+  void add_cell_row(const RowGroup& group, const StudyRow& row) {
     const auto [place, is_new] = cells.try_emplace(row.key, data.cells.size());
     if (is_new) {
-      const size_t drawing = drawings.at(ReportDrawing{row.method, names.parameters(row)}.title());
-      data.cells.push_back({row.key, models.at({series_of(row), resolution_text(row)}), drawing, row.view, row.time_ms(), row.time_low_ms(),
+      const size_t drawing = drawings.at(group.drawing.title());
+      data.cells.push_back({row.key, models.at({group.series, group.resolution}), drawing, row.view, row.time_ms(), row.time_low_ms(),
                             row.time_high_ms(), row.bytes, row.failed});
     }
     ReportCell& cell = data.cells[place->second];
@@ -252,17 +224,14 @@ std::string compared_metric(const ReportData& data) {
 }
 
 ReportData collect_report(const StudyHead& head, const std::vector<StudyRow>& rows) {
-  std::vector<const StudyRow*> sorted;
-  sorted.reserve(rows.size());
-  for (const StudyRow& row : rows) sorted.push_back(&row);
-  std::sort(sorted.begin(), sorted.end(), [](const StudyRow* a, const StudyRow* b) { return row_less(*a, *b); });
+  const GroupedRows sorted = grouped_rows(rows);
   ReportData data;
   data.truth_bound_px = head.truth_within_px;
   data.exact = head.exact;
-  Collector collector{data, DrawingNames(sorted)};
-  collector.add_models(head, sorted);
-  collector.add_drawings(sorted);
-  for (const StudyRow* row : sorted) collector.add_cell_row(*row);
+  Collector collector{data, sorted};
+  collector.add_models(head);
+  collector.add_drawings();
+  for (const GroupedRow& one : sorted.rows) collector.add_cell_row(sorted.groups[one.group], *one.row);
   collector.finish();
   collector.choose_main();
   return data;

@@ -20,11 +20,6 @@ bool is_resolution(const std::string& name) {
   return std::find(std::begin(kResolutionNames), std::end(kResolutionNames), name) != std::end(kResolutionNames);
 }
 
-std::string spaced(std::string text) {
-  std::replace(text.begin(), text.end(), '_', ' ');
-  return text;
-}
-
 std::string parameter_text(const std::string& name, const std::string& value) {
   if (name == "normals") return value == "flat" ? "flat facets" : spaced(value) + " normals";
   if (name == "gradient") return spaced(value) + " gradient";
@@ -120,6 +115,11 @@ struct LineReader {
 };
 
 }  // namespace
+
+std::string spaced(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
 
 std::string series_of(const StudyRow& row) {
   std::string text = spaced(row.surface);

@@ -53,6 +53,8 @@ struct StudyRow {
   double time_high_ms() const { return build.high_ms + trace.high_ms + border_ms; }
 };
 
+/// A name as words: "rim width" of "rim_width".
+std::string spaced(std::string name);
 /// "mesh, vertex normals": the model without its resolution, the same for all rows of one line in a chart.
 std::string series_of(const StudyRow& row);
 /// "level 3", "128 voxels".

@@ -32,6 +32,14 @@ std::shared_ptr<LevelSetData> make_level_set(nanovdb::GridHandle<nanovdb::HostBu
   return data;
 }
 
+void take_over(const LevelSet& from, LevelSetData& to) {
+  const LevelSetInfo& info = from.info();
+  to.info.warnings = info.warnings;
+  to.info.band.near_nodes = info.band.near_nodes;
+  to.info.band.unsigned_nodes = info.band.unsigned_nodes;
+  to.file = from.data().file;
+}
+
 const LevelSetInfo& LevelSet::info() const { return data_->info; }
 
 std::int64_t cells_lacking(const LevelSet& level_set, const GradientDescriptor& gradient) {

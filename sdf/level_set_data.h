@@ -82,6 +82,10 @@ std::array<double, 8> cell_values(const Accessor& accessor, const nanovdb::Coord
 std::shared_ptr<LevelSetData> make_level_set(nanovdb::GridHandle<nanovdb::HostBuffer> handle, const Affine& world_from_index,
                                              const std::string& name, double nominal_half_width);
 
+/// What was found when a level set was read, for one that is made of it: its warnings, what its file says, and how much of its surface has
+/// no inside.
+void take_over(const LevelSet& from, LevelSetData& to);
+
 /// level_set_from_blocks, still open to additions (sdf/openvdb_blocks.cpp).
 std::shared_ptr<LevelSetData> join_blocks(std::span<const LevelSetBlock> blocks, double voxel_size, double half_width_voxels,
                                           const std::string& name, const glm::dvec3& origin);

@@ -27,7 +27,7 @@ std::vector<MissingBlock> missing_nodes(const LevelSetData& data, const Stencil&
 /// Values for them.
 std::vector<FilledBlock> fill_nodes(const LevelSetData& data, const std::vector<MissingBlock>& missing);
 
-/// The grid with these values; nothing else in it changes. sdf/openvdb_fill.cpp
+/// The grid with these values; nothing else in it changes, nor in what is said of it.
 std::shared_ptr<LevelSetData> with_filled_nodes(const LevelSet& level_set, const std::vector<FilledBlock>& blocks);
 
 }  // namespace limn

@@ -22,14 +22,6 @@ std::shared_ptr<LevelSetData> freeze(const openvdb::FloatGrid& grid, const Affin
   return make_level_set(std::move(handle), world_from_index, name, nominal_half_width);
 }
 
-void take_over(const LevelSet& from, LevelSetData& to) {
-  const LevelSetInfo& info = from.info();
-  to.info.warnings = info.warnings;
-  to.info.band.near_nodes = info.band.near_nodes;
-  to.info.band.unsigned_nodes = info.band.unsigned_nodes;
-  to.file = from.data().file;
-}
-
 openvdb::FloatGrid::Ptr thaw(const LevelSet& level_set) {
   initialize_openvdb();
   // The typed overload: the one on handles would instantiate every grid type there is.

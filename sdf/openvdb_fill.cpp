@@ -25,10 +25,7 @@ std::shared_ptr<LevelSetData> volumes::with_filled_nodes(const LevelSet& level_s
     }
   }
   const LevelSetInfo& info = level_set.info();
-  std::shared_ptr<LevelSetData> data = freeze(*grid, info.world_from_index, info.name, info.half_width_voxels);
-  data->info.build_ms = info.build_ms;
-  take_over(level_set, *data);
-  return data;
+  return freeze(*grid, info.world_from_index, info.name, info.half_width_voxels);
 }
 
 }  // namespace limn

@@ -14,10 +14,6 @@ void initialize_openvdb();
 std::shared_ptr<LevelSetData> freeze(const openvdb::FloatGrid& grid, const Affine& world_from_index, const std::string& name,
                                      double nominal_half_width);
 
-/// What was found when a level set was read, for one that is made of it: its warnings, what its file says, and how much of its surface has
-/// no inside.
-void take_over(const LevelSet& from, LevelSetData& to);
-
 /// An OpenVDB copy with its transform, class and name.
 openvdb::FloatGrid::Ptr thaw(const LevelSet& level_set);
 

@@ -18,10 +18,6 @@ std::shared_ptr<LevelSetData> rebuild(std::span<const LevelSetBlock> blocks, std
   return volume_module().rebuild(blocks, tiles, background, world_from_index, name);
 }
 
-std::shared_ptr<LevelSetData> with_filled_nodes(const LevelSet& level_set, const std::vector<FilledBlock>& blocks) {
-  return volume_module().with_filled_nodes(level_set, blocks);
-}
-
 LevelSet moved(const LevelSet& level_set, const Affine& world_from_grid) { return volume_module().moved(level_set, world_from_grid); }
 
 PolygonSoup mesh_from_level_set(const LevelSet& level_set) { return volume_module().mesh_from_level_set(level_set); }

@@ -19,6 +19,7 @@ struct VolumeModule {
   const char* version = nullptr;  ///< Of limn: another one's module may have other functions.
 
   decltype(&limn::rebuild) rebuild = nullptr;
+  /// The grid alone, without what the other says of itself.
   decltype(&limn::with_filled_nodes) with_filled_nodes = nullptr;
   decltype(&limn::moved) moved = nullptr;
   decltype(&limn::mesh_from_level_set) mesh_from_level_set = nullptr;

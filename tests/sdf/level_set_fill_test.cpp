@@ -8,6 +8,8 @@
 
 #include "sdf/level_set_band.h"
 #include "sdf/level_set_data.h"
+#include "sdf/level_set_fill.h"
+#include "sdf/volume_module.h"
 #include "tests/random_seed.h"
 #include "tests/sdf/level_set_maker.h"
 
@@ -172,6 +174,52 @@ TEST(LevelSetFill, ABandThatIsWideEnoughIsLeftAlone) {
   for (const GradientDescriptor& gradient : gradients()) {
     EXPECT_EQ(cells_lacking(wide, gradient), 0);
     EXPECT_EQ(&complete_band(wide, gradient).data(), &wide.data());
+  }
+}
+
+/// Values and signs for some nodes of blocks that have a leaf, or of one that has none.
+std::vector<FilledBlock> random_filling(std::mt19937_64& random, bool beside_leaves) {
+  std::uniform_int_distribution<int> place(-1, 1), kind(0, 9);
+  std::uniform_real_distribution<float> value(-1.0f, 1.0f);
+  std::vector<FilledBlock> blocks;
+  for (int k = 0; k < 27; ++k) {
+    if (kind(random) < 4) continue;
+    FilledBlock& block = blocks.emplace_back();
+    block.origin = 8 * glm::ivec3(k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1);
+    for (size_t n = 0; n < 512; ++n) {
+      block.values[n] = value(random);
+      const int what = kind(random);
+      (what == 0 ? block.filled : block.kept_out)[n >> 6] |= std::uint64_t{what < 2 ? 1u : 0u} << (n & 63);
+    }
+  }
+  if (beside_leaves) blocks.emplace_back().origin = glm::ivec3(64, 0, 0), blocks.back().filled[3] = 1, blocks.back().values.fill(0.5f);
+  return blocks;
+}
+
+TEST(LevelSetFill, WrittenIntoTheGridItIsTheGridThatOpenVdbMakes) {
+  const std::uint64_t seed = random_seed();
+  for (std::uint64_t k = 0; k < 20; ++k) {
+    std::mt19937_64 random(seed + k);
+    const LevelSet level_set = random_level_set(seed + k, 0.5);
+    const bool beside_leaves = k % 5 == 4;
+    const std::vector<FilledBlock> blocks = random_filling(random, beside_leaves);
+    const std::shared_ptr<LevelSetData> own = with_filled_nodes(level_set, blocks),
+                                        openvdb = volume_module().with_filled_nodes(level_set, blocks);
+    ASSERT_EQ(own->grid->tree().nodeCount(0), openvdb->grid->tree().nodeCount(0));
+    EXPECT_EQ(own->grid->tree().nodeCount(0), level_set.data().grid->tree().nodeCount(0) + (beside_leaves ? 1 : 0));
+    EXPECT_EQ(own->grid->activeVoxelCount(), openvdb->grid->activeVoxelCount());
+    EXPECT_EQ(own->grid->indexBBox(), openvdb->grid->indexBBox());
+    EXPECT_EQ(own->info.active_voxels, openvdb->info.active_voxels);
+    const auto* const leaves = own->grid->tree().getFirstNode<0>();
+    const auto* const expected = openvdb->grid->tree().getFirstNode<0>();
+    for (std::uint32_t leaf = 0; leaf < own->grid->tree().nodeCount(0); ++leaf) {
+      ASSERT_EQ(leaves[leaf].origin(), expected[leaf].origin());
+      EXPECT_EQ(leaves[leaf].bbox(), expected[leaf].bbox());
+      EXPECT_EQ(leaves[leaf].valueMask(), expected[leaf].valueMask()) << k << " leaf " << leaf;
+      EXPECT_TRUE(std::equal(leaves[leaf].data()->mValues, leaves[leaf].data()->mValues + 512, expected[leaf].data()->mValues))
+          << k << " leaf " << leaf;
+    }
+    EXPECT_EQ(own->info.warnings, level_set.info().warnings);
   }
 }
 

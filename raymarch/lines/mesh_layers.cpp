@@ -46,7 +46,9 @@ std::shared_ptr<const MeshTree> tree_of(const LineTask& task, const std::vector<
     offset = model.render_origin;
     for (const auto& surface : model.surfaces) polygons.push_back(surface.polygons);
   }
-  return kept = std::make_shared<const MeshTree>(polygons, offset, numbers, task.extent, !smooth);
+  kept = std::make_shared<const MeshTree>(polygons, offset, numbers, task.extent, !smooth);
+  if (smooth) kept->prepare_for_smooth();
+  return kept;
 }
 
 }  // namespace

@@ -136,6 +136,10 @@ void MeshTree::build() const {
   check_tree(embree_->device);
 }
 
+void MeshTree::prepare_for_smooth() const {
+  parallel_invoke([this] { once_alone(built_, [this] { build(); }); }, [this] { std::call_once(around_made_, [this] { find_around(); }); });
+}
+
 std::vector<LayerHit> MeshTree::hits_along(const glm::dvec3& origin, const glm::dvec3& direction, double end) const {
   struct Collector {
     RTCIntersectContext context;

@@ -63,6 +63,8 @@ class MeshTree {
   /// All hits on origin + t direction, 0 < t < end, in order; one where a shared edge or vertex is hit. Single precision, whose tree is
   /// built when first asked for.
   std::vector<LayerHit> hits_along(const glm::dvec3& origin, const glm::dvec3& direction, double end) const;
+  /// Makes what rays from smooth curves ask for, by all threads: the first of them would make it while the others wait.
+  void prepare_for_smooth() const;
   /// The same triangles for segments in double precision. Made when first asked for.
   const ExactHits& exact_hits() const;
   /// At a place on a triangle: between the normals of its corners, each the mean of those of the triangles around it. Unit.

@@ -16,6 +16,9 @@ namespace limn {
 namespace {
 
 constexpr int kFinest = 8;
+// What is left beyond a level is guessed from the steps before. A guess this much below what is asked for holds; a nearer one is held
+// against the next step.
+constexpr double kSurely = 0.67;
 // Triangles smaller than that are finer than any border that is measured.
 constexpr double kMostTrianglesPerPixel = 4.0;
 
@@ -116,21 +119,24 @@ ViewLevel level_of_cage(const MeshSource& source, Scheme scheme, const SurfaceSe
   Mesh coarse = refine(source.mesh, how, source.file);
   std::vector<double> steps;  // from each level to the next
   double rest = std::numeric_limits<double>::infinity();
+  const auto limited = [&](const char* reason) {
+    return rest <= tolerance_px ? coarsest_within(steps, rest, tolerance_px) : ViewLevel{how.level - 1, rest, reason};
+  };
   for (how.level = 1; how.level <= kFinest; ++how.level) {
     const RefinedSize size = predict_refined_size(source.mesh, scheme, how.level);
-    if (size.bytes > settings.max_bytes) return {how.level - 1, rest, "a finer one would not fit into memory"};
+    if (size.bytes > settings.max_bytes) return limited("a finer one would not fit into memory");
     if (2.0 * static_cast<double>(size.faces) > kMostTrianglesPerPixel * std::max(pictures.pixels(), 1e4))
-      return {how.level - 1, rest, "a finer one would have more than four triangles a pixel"};
+      return limited("a finer one would have more than four triangles a pixel");
     Mesh fine = refine(source.mesh, how, source.file);
     const double step = step_px(coarse, fine, scheme, pictures);
     // Fourfold at best; at the first step, when nothing is known, twofold.
     const double ratio = !steps.empty() && steps.back() > 0.0 ? std::clamp(step / steps.back(), 0.25, 0.9) : 0.5;
     rest = step * ratio / (1.0 - ratio);
     steps.push_back(step);
-    if (rest <= tolerance_px) return coarsest_within(steps, rest, tolerance_px);
+    if (rest <= kSurely * tolerance_px) return coarsest_within(steps, rest, tolerance_px);
     coarse = std::move(fine);
   }
-  return {kFinest, rest, "it is the finest level"};
+  return limited("it is the finest level");
 }
 
 /// Of a tessellated field at the middles of its faces and edges, pixels; distances to first order.

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "raymarch/truth/parts.h"
+#include "raymarch/truth/untouched_regions.h"
 #include "sdf/parallel.h"
 
 namespace limn {
@@ -199,31 +201,6 @@ void fill_touched(const std::vector<Piece>& pieces, const std::vector<size_t>& g
   });
 }
 
-/// Pixels that no curve separates, as lists of indices: connected by their sides.
-std::vector<std::vector<size_t>> regions_of(std::vector<std::uint8_t> taken, int width, int height) {
-  std::vector<std::vector<size_t>> regions;
-  const auto w = static_cast<size_t>(width);
-  for (size_t first = 0; first < taken.size(); ++first) {
-    if (taken[first]) continue;
-    std::vector<size_t> region = {first};
-    taken[first] = 1;
-    for (size_t k = 0; k < region.size(); ++k) {
-      const size_t at = region[k], x = at % w, y = at / w;
-      const auto visit = [&](bool inside, size_t next) {
-        if (!inside || taken[next]) return;
-        taken[next] = 1;
-        region.push_back(next);
-      };
-      visit(x > 0, at - 1);
-      visit(x + 1 < w, at + 1);
-      visit(y > 0, at - w);
-      visit(y + 1 < static_cast<size_t>(height), at + w);
-    }
-    regions.push_back(std::move(region));
-  }
-  return regions;
-}
-
 void look(const std::vector<size_t>& pixels, const SeenInk& seen, Image<float>& share, const ExecutionSettings& how) {
   parallel_parts(pixels.size(), size_t{256}, [&](const IndexRange<size_t>& range) {
     if (how.cancelled && how.cancelled()) throw Cancelled{};
@@ -240,13 +217,17 @@ void look(const std::vector<size_t>& pixels, const SeenInk& seen, Image<float>& 
 
 /// A region that no curve enters is of one kind: a lattice of its pixels is looked at, and all of them where those disagree.
 void fill_untouched(const std::vector<std::uint8_t>& touched, const SeenInk& seen, const ExecutionSettings& how, Image<float>& share) {
-  const auto regions = regions_of(touched, share.width, share.height);
+  const std::vector<PixelRegion> regions = untouched_regions(touched, share.width, share.height);
+  const auto width = static_cast<size_t>(share.width);
   std::vector<size_t> lattice;
   std::vector<size_t> ends;
-  for (const auto& region : regions) {
-    for (size_t k = 0; k < region.size(); ++k) {
-      const size_t x = region[k] % static_cast<size_t>(share.width), y = region[k] / static_cast<size_t>(share.width);
-      if (k == 0 || (x % kLattice == 0 && y % kLattice == 0)) lattice.push_back(region[k]);
+  for (const PixelRegion& region : regions) {
+    lattice.push_back(region.front().first);
+    for (const PixelRun& run : region) {
+      const size_t row = run.first / width;
+      if (row % kLattice != 0) continue;
+      const size_t column = (run.first - row * width + kLattice - 1) / kLattice * kLattice;
+      for (size_t at = row * width + column; at < run.last; at += kLattice) lattice.push_back(at);
     }
     ends.push_back(lattice.size());
   }
@@ -257,22 +238,26 @@ void fill_untouched(const std::vector<std::uint8_t>& touched, const SeenInk& see
     const bool agree =
         std::all_of(lattice.begin() + static_cast<std::ptrdiff_t>(first), lattice.begin() + static_cast<std::ptrdiff_t>(ends[r]),
                     [&](size_t pixel) { return share.pixels[pixel] == ink; });
-    if (!agree) unclear.insert(unclear.end(), regions[r].begin(), regions[r].end());
-    for (const size_t pixel : regions[r]) share.pixels[pixel] = ink;
+    for (const PixelRun& run : regions[r]) {
+      std::fill_n(share.pixels.begin() + static_cast<std::ptrdiff_t>(run.first), run.last - run.first, ink);
+      for (size_t pixel = run.first; !agree && pixel < run.last; ++pixel) unclear.push_back(pixel);
+    }
   }
   look(unclear, seen, share, how);
 }
 
 std::int64_t count_disputed(const std::vector<std::uint8_t>& touched, const Image<float>& share) {
-  std::int64_t disputed = 0;
   const auto differ = [&](size_t a, size_t b) { return !touched[a] && !touched[b] && share.pixels[a] != share.pixels[b]; };
-  for (int y = 0; y < share.height; ++y) {
-    for (int x = 0; x < share.width; ++x) {
-      if (x + 1 < share.width) disputed += differ(share.index(x, y), share.index(x + 1, y));
-      if (y + 1 < share.height) disputed += differ(share.index(x, y), share.index(x, y + 1));
+  const auto in_rows = [&](const IndexRange<int>& rows, std::int64_t disputed) {
+    for (int y = rows.first; y < rows.last; ++y) {
+      for (int x = 0; x < share.width; ++x) {
+        if (x + 1 < share.width) disputed += differ(share.index(x, y), share.index(x + 1, y));
+        if (y + 1 < share.height) disputed += differ(share.index(x, y), share.index(x, y + 1));
+      }
     }
-  }
-  return disputed;
+    return disputed;
+  };
+  return parallel_reduce(share.height, 16, std::int64_t{0}, in_rows, std::plus<>());
 }
 
 }  // namespace

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cmath>
+#include <iterator>
 
 #include "sdf/level_set_fill.h"
+#include "sdf/level_set_nano.h"
 #include "sdf/nano_memory.h"
 #include "sdf/page_advice.h"
 #include "sdf/parallel.h"
@@ -28,31 +31,37 @@ Handle copied(const Handle& from) {
   return Handle(std::move(buffer));
 }
 
+/// Calls `write(n, value)` for each node of the block's that is filled or kept out, and sets the masks of those in the band.
+template <class Write, class ActiveAt>
+void apply(const FilledBlock& block, const Write& write, const ActiveAt& active) {
+  for (std::uint32_t word = 0; word < 8; ++word) {
+    for (std::uint64_t nodes = block.filled[word] | block.kept_out[word]; nodes != 0; nodes &= nodes - 1) {
+      const std::uint32_t n = word * 64 + static_cast<std::uint32_t>(std::countr_zero(nodes));
+      write(n, block.values[n]);
+    }
+    std::uint64_t& own = active(word);
+    own = (own | block.filled[word]) & ~block.kept_out[word];
+  }
+}
+
 /// How many nodes more lie in the band then.
 std::int64_t write_nodes(const FilledBlock& block, Leaf& leaf) {
   auto& data = *leaf.data();
-  const auto active = [&](std::uint32_t word) -> std::uint64_t& { return data.mValueMask.getWord<std::uint64_t>(static_cast<int>(word)); };
-  std::int64_t more = 0;
-  for (std::uint32_t word = 0; word < 8; ++word) {
-    const std::uint64_t before = active(word);
-    for (std::uint64_t nodes = block.filled[word] | block.kept_out[word]; nodes != 0; nodes &= nodes - 1) {
-      const std::uint32_t n = word * 64 + static_cast<std::uint32_t>(std::countr_zero(nodes));
-      data.mValues[n] = block.values[n];
-    }
-    active(word) = (before | block.filled[word]) & ~block.kept_out[word];
-    more += std::popcount(active(word)) - std::popcount(before);
-  }
-  return more;
+  const auto before = static_cast<std::int64_t>(data.mValueMask.countOn());
+  apply(
+      block, [&](std::uint32_t n, float value) { data.mValues[n] = value; },
+      [&](std::uint32_t word) -> std::uint64_t& { return data.mValueMask.getWord<std::uint64_t>(static_cast<int>(word)); });
+  return static_cast<std::int64_t>(data.mValueMask.countOn()) - before;
 }
 
-/// Null where there is no leaf for one of the blocks: OpenVDB finds new ones their places in the tree.
+std::shared_ptr<LevelSetData> as_before(const LevelSet& level_set, Handle handle) {
+  const LevelSetInfo& info = level_set.info();
+  return make_level_set(std::move(handle), info.world_from_index, info.name, info.half_width_voxels);
+}
+
+/// Every block has its leaf.
 std::shared_ptr<LevelSetData> filled_in_place(const LevelSet& level_set, const std::vector<FilledBlock>& blocks) {
-  const LevelSetData& from = level_set.data();
-  if (from.handle.gridCount() != 1) return nullptr;
-  const nanovdb::FloatGrid::AccessorType has = from.accessor();
-  if (!std::all_of(blocks.begin(), blocks.end(), [&](const FilledBlock& block) { return has.probeLeaf(coord(block.origin)) != nullptr; }))
-    return nullptr;
-  Handle handle = copied(from.handle);
+  Handle handle = copied(level_set.data().handle);
   nanovdb::FloatGrid& grid = *handle.grid<float>();
   std::atomic<std::int64_t> more{0};
   parallel_parts(blocks.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
@@ -64,14 +73,94 @@ std::shared_ptr<LevelSetData> filled_in_place(const LevelSet& level_set, const s
   });
   grid.tree().data()->mVoxelCount += static_cast<std::uint64_t>(more.load());
   nanovdb::gridStats(grid, nanovdb::StatsMode::BBox);
-  const LevelSetInfo& info = level_set.info();
-  return make_level_set(std::move(handle), info.world_from_index, info.name, info.half_width_voxels);
+  return as_before(level_set, std::move(handle));
+}
+
+/// The leaves that a grid has, and those that it will have besides, each with what is filled in.
+struct Leaves {
+  std::vector<glm::ivec3> origins{};
+  std::vector<const FilledBlock*> filled{};
+};
+
+Leaves leaves_of(const nanovdb::FloatGrid& grid, const std::vector<FilledBlock>& blocks) {
+  const Leaf* const first = grid.tree().getFirstNode<0>();
+  const std::uint32_t count = grid.tree().nodeCount(0);
+  Leaves leaves;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const nanovdb::Coord origin = first[i].origin();
+    leaves.origins.emplace_back(origin[0], origin[1], origin[2]);
+  }
+  leaves.filled.resize(count, nullptr);
+  const nanovdb::FloatGrid::AccessorType accessor = grid.getAccessor();
+  for (const FilledBlock& block : blocks) {
+    if (const Leaf* const leaf = accessor.probeLeaf(coord(block.origin))) {
+      leaves.filled[static_cast<size_t>(leaf - first)] = &block;
+    } else {
+      leaves.origins.push_back(block.origin);
+      leaves.filled.push_back(&block);
+    }
+  }
+  return leaves;
+}
+
+/// Of the grid, without what is filled in. Where it has no leaf, of a tile.
+LevelSetBlock block_of(const nanovdb::FloatGrid::AccessorType& accessor, const glm::ivec3& origin) {
+  LevelSetBlock block{};
+  block.origin = origin;
+  if (const Leaf* const leaf = accessor.probeLeaf(coord(origin))) {
+    std::copy_n(leaf->data()->mValues, 512, block.values);
+    for (int word = 0; word < 8; ++word) block.active[word] = leaf->data()->mValueMask.getWord<std::uint64_t>(word);
+  } else {
+    std::fill_n(block.values, 512, accessor.getValue(coord(origin)));
+  }
+  return block;
+}
+
+/// What nano_grid() writes as it is: nodes outside the band hold the background, either way.
+bool is_plain(const LevelSetBlock& block, float background) {
+  for (size_t n = 0; n < 512; ++n)
+    if ((block.active[n >> 6] >> (n & 63) & 1) == 0 && std::abs(block.values[n]) != background) return false;
+  return has_active_node(block);
+}
+
+/// With leaves more. Null for grids that are not as limn makes them: OpenVDB keeps whatever they hold.
+std::shared_ptr<LevelSetData> filled_anew(const LevelSet& level_set, const std::vector<FilledBlock>& blocks) {
+  const nanovdb::FloatGrid& grid = *level_set.data().grid;
+  const float background = std::abs(grid.tree().background());
+  const auto& tiles = grid.tree().data()->mTileCount;
+  if (std::any_of(std::begin(tiles), std::end(tiles), [](auto count) { return count != 0; })) return nullptr;
+  const Leaves leaves = leaves_of(grid, blocks);
+  std::atomic<bool> plain{true};
+  const FillLeaves fill = [&](const IndexRange<size_t>& part, const WriteLeaf& write) {
+    const nanovdb::FloatGrid::AccessorType accessor = grid.getAccessor();
+    for (size_t i = part.first; i < part.last; ++i) {
+      LevelSetBlock block = block_of(accessor, leaves.origins[i]);
+      if (leaves.filled[i] != nullptr)
+        apply(
+            *leaves.filled[i], [&](std::uint32_t n, float value) { block.values[n] = value; },
+            [&](std::uint32_t word) -> std::uint64_t& { return block.active[word]; });
+      if (!is_plain(block, background)) plain = false;
+      write(i, block);
+    }
+  };
+  const auto inside = [&grid](const glm::dvec3& place) {
+    const glm::ivec3 node(glm::floor(place));
+    return grid.tree().getValue(coord(node)) < 0.0f;
+  };
+  Handle handle = nano_grid(leaves.origins, fill, background, inside);
+  return plain ? as_before(level_set, std::move(handle)) : nullptr;
 }
 
 }  // namespace
 
 std::shared_ptr<LevelSetData> with_filled_nodes(const LevelSet& level_set, const std::vector<FilledBlock>& blocks) {
-  std::shared_ptr<LevelSetData> data = filled_in_place(level_set, blocks);
+  std::shared_ptr<LevelSetData> data;
+  if (level_set.data().handle.gridCount() == 1) {
+    const nanovdb::FloatGrid::AccessorType has = level_set.data().accessor();
+    const bool all =
+        std::all_of(blocks.begin(), blocks.end(), [&](const FilledBlock& block) { return has.probeLeaf(coord(block.origin)) != nullptr; });
+    data = all ? filled_in_place(level_set, blocks) : filled_anew(level_set, blocks);
+  }
   if (!data) data = volume_module().with_filled_nodes(level_set, blocks);
   data->info.build_ms = level_set.info().build_ms;
   take_over(level_set, *data);

@@ -366,11 +366,12 @@ nanovdb::GridHandle<nanovdb::HostBuffer> nano_grid(std::span<const LevelSetBlock
   return grid_of(std::move(places), blocks.size(), fill, background, inside);
 }
 
-nanovdb::GridHandle<nanovdb::HostBuffer> nano_grid(std::span<const glm::ivec3> origins, const FillLeaves& fill, float background) {
+nanovdb::GridHandle<nanovdb::HostBuffer> nano_grid(std::span<const glm::ivec3> origins, const FillLeaves& fill, float background,
+                                                   const InsideAt& inside) {
   std::vector<Place> places;
   places.reserve(origins.size());
   for (size_t i = 0; i < origins.size(); ++i) places.push_back(place_of(origins[i], i));
-  return grid_of(std::move(places), origins.size(), fill, background, {});
+  return grid_of(std::move(places), origins.size(), fill, background, inside);
 }
 
 }  // namespace limn

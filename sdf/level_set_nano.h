@@ -34,8 +34,9 @@ using WriteLeaf = std::function<void(size_t, const LevelSetBlock&)>;
 using FillLeaves = std::function<void(const IndexRange<size_t>& part, const WriteLeaf& write)>;
 
 /// The same from blocks that are made when they are written, so that they are never all in memory. Each has an active node; `origins` are
-/// theirs, each once.
-nanovdb::GridHandle<nanovdb::HostBuffer> nano_grid(std::span<const glm::ivec3> origins, const FillLeaves& fill, float background);
+/// theirs, each once. `inside` may be asked from many threads at a time.
+nanovdb::GridHandle<nanovdb::HostBuffer> nano_grid(std::span<const glm::ivec3> origins, const FillLeaves& fill, float background,
+                                                   const std::function<bool(const glm::dvec3&)>& inside = {});
 
 /// level_set_from_blocks of such blocks, still open to additions.
 std::shared_ptr<LevelSetData> join_leaves(std::span<const glm::ivec3> origins, const FillLeaves& fill, double voxel_size,

@@ -177,9 +177,11 @@ TEST(LevelSetFill, ABandThatIsWideEnoughIsLeftAlone) {
   }
 }
 
-/// Values and signs for some nodes of blocks that have a leaf, or of one that has none.
-std::vector<FilledBlock> random_filling(std::mt19937_64& random, bool beside_leaves) {
-  std::uniform_int_distribution<int> place(-1, 1), kind(0, 9);
+constexpr float kBackground = 3.0f;  // of random_level_set()
+
+/// Values and signs for some nodes of blocks that have a leaf, and of one that has none. `plain`: what is kept out holds the background.
+std::vector<FilledBlock> random_filling(std::mt19937_64& random, bool beside_leaves, bool plain) {
+  std::uniform_int_distribution<int> kind(0, 9);
   std::uniform_real_distribution<float> value(-1.0f, 1.0f);
   std::vector<FilledBlock> blocks;
   for (int k = 0; k < 27; ++k) {
@@ -187,26 +189,33 @@ std::vector<FilledBlock> random_filling(std::mt19937_64& random, bool beside_lea
     FilledBlock& block = blocks.emplace_back();
     block.origin = 8 * glm::ivec3(k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1);
     for (size_t n = 0; n < 512; ++n) {
-      block.values[n] = value(random);
       const int what = kind(random);
+      block.values[n] = value(random);
+      if (plain && what == 1) block.values[n] = std::copysign(kBackground, block.values[n]);
       (what == 0 ? block.filled : block.kept_out)[n >> 6] |= std::uint64_t{what < 2 ? 1u : 0u} << (n & 63);
     }
   }
-  if (beside_leaves) blocks.emplace_back().origin = glm::ivec3(64, 0, 0), blocks.back().filled[3] = 1, blocks.back().values.fill(0.5f);
+  if (!beside_leaves) return blocks;
+  for (const glm::ivec3 origin : {glm::ivec3(64, 0, 0), glm::ivec3(-16, 8, -8), glm::ivec3(0, 5000, 0)}) {
+    FilledBlock& block = blocks.emplace_back();
+    block.origin = origin;
+    block.values.fill(0.5f);
+    block.filled[3] = 1;
+  }
   return blocks;
 }
 
 TEST(LevelSetFill, WrittenIntoTheGridItIsTheGridThatOpenVdbMakes) {
   const std::uint64_t seed = random_seed();
-  for (std::uint64_t k = 0; k < 20; ++k) {
+  for (std::uint64_t k = 0; k < 24; ++k) {
     std::mt19937_64 random(seed + k);
     const LevelSet level_set = random_level_set(seed + k, 0.5);
-    const bool beside_leaves = k % 5 == 4;
-    const std::vector<FilledBlock> blocks = random_filling(random, beside_leaves);
+    const bool beside_leaves = k % 2 != 0;
+    const std::vector<FilledBlock> blocks = random_filling(random, beside_leaves, k % 4 < 3);
     const std::shared_ptr<LevelSetData> own = with_filled_nodes(level_set, blocks),
                                         openvdb = volume_module().with_filled_nodes(level_set, blocks);
     ASSERT_EQ(own->grid->tree().nodeCount(0), openvdb->grid->tree().nodeCount(0));
-    EXPECT_EQ(own->grid->tree().nodeCount(0), level_set.data().grid->tree().nodeCount(0) + (beside_leaves ? 1 : 0));
+    EXPECT_EQ(own->grid->tree().nodeCount(0), level_set.data().grid->tree().nodeCount(0) + (beside_leaves ? 3 : 0));
     EXPECT_EQ(own->grid->activeVoxelCount(), openvdb->grid->activeVoxelCount());
     EXPECT_EQ(own->grid->indexBBox(), openvdb->grid->indexBBox());
     EXPECT_EQ(own->info.active_voxels, openvdb->info.active_voxels);
@@ -219,6 +228,11 @@ TEST(LevelSetFill, WrittenIntoTheGridItIsTheGridThatOpenVdbMakes) {
       EXPECT_TRUE(std::equal(leaves[leaf].data()->mValues, leaves[leaf].data()->mValues + 512, expected[leaf].data()->mValues))
           << k << " leaf " << leaf;
     }
+    // Tiles, too.
+    const auto here = own->accessor(), there = openvdb->accessor();
+    for (int x = -70; x < 140; x += 3)
+      for (int y = -70; y < 140; y += 7)
+        for (int z = -70; z < 140; z += 5) ASSERT_EQ(here.getValue({x, y, z}), there.getValue({x, y, z})) << x << " " << y << " " << z;
     EXPECT_EQ(own->info.warnings, level_set.info().warnings);
   }
 }

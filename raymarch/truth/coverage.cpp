@@ -19,6 +19,12 @@ struct Piece {
   glm::dvec2 a{0.0}, b{0.0};
 };
 
+/// A pixel's upper left one, px.
+glm::dvec2 corner_of(size_t pixel, size_t width) {
+  const size_t x = pixel % width, y = pixel / width;
+  return {static_cast<double>(x), static_cast<double>(y)};
+}
+
 /// Cuts a step at the lines between pixels.
 void cut_at_pixels(const glm::dvec2& a, const glm::dvec2& b, int width, int height, std::vector<Piece>& pieces) {
   std::vector<double> at = {0.0, 1.0};
@@ -103,9 +109,9 @@ Edge edge_of(const Piece& piece, double y, double top, double bottom, double lef
 }
 
 std::vector<Trapezoid> trapezoids_of(std::span<const Piece> pieces, int width) {
-  const std::uint64_t pixel = pieces[0].pixel;
-  const double left = static_cast<double>(pixel % static_cast<std::uint64_t>(width));
-  const std::vector<double> cuts = row_cuts(pieces, static_cast<double>(pixel / static_cast<std::uint64_t>(width)));
+  const glm::dvec2 corner = corner_of(pieces[0].pixel, static_cast<size_t>(width));
+  const double left = corner.x;
+  const std::vector<double> cuts = row_cuts(pieces, corner.y);
   std::vector<Trapezoid> result;
   std::vector<Edge> edges;
   for (size_t k = 0; k + 1 < cuts.size(); ++k) {
@@ -143,9 +149,8 @@ bool is_chain(std::span<const Piece> pieces, int width) {
   for (size_t i = 1; i < pieces.size(); ++i) {
     if (pieces[i].a != pieces[i - 1].b) return false;
   }
-  const double left = static_cast<double>(pieces[0].pixel % static_cast<std::uint64_t>(width));
-  const double top = static_cast<double>(pieces[0].pixel / static_cast<std::uint64_t>(width));
-  return on_frame(pieces.front().a, left, top) && on_frame(pieces.back().b, left, top);
+  const glm::dvec2 corner = corner_of(pieces[0].pixel, static_cast<size_t>(width));
+  return on_frame(pieces.front().a, corner.x, corner.y) && on_frame(pieces.back().b, corner.x, corner.y);
 }
 
 void join_faces(std::vector<Trapezoid>& trapezoids) {
@@ -206,8 +211,7 @@ void look(const std::vector<size_t>& pixels, const SeenInk& seen, Image<float>& 
     if (how.cancelled && how.cancelled()) throw Cancelled{};
     std::vector<glm::dvec2> centers;
     for (size_t i = range.begin(); i < range.end(); ++i) {
-      const auto width = static_cast<size_t>(share.width);
-      centers.push_back({static_cast<double>(pixels[i] % width) + 0.5, static_cast<double>(pixels[i] / width) + 0.5});
+      centers.push_back(corner_of(pixels[i], static_cast<size_t>(share.width)) + 0.5);
     }
     std::vector<std::uint8_t> ink(centers.size());
     seen(centers, ink);
@@ -223,7 +227,7 @@ void fill_untouched(const std::vector<std::uint8_t>& touched, const SeenInk& see
   std::vector<size_t> ends;
   for (const PixelRegion& region : regions) {
     lattice.push_back(region.front().first);
-    for (const PixelRun& run : region) {
+    for (const UntouchedRun& run : region) {
       const size_t row = run.first / width;
       if (row % kLattice != 0) continue;
       const size_t column = (run.first - row * width + kLattice - 1) / kLattice * kLattice;
@@ -238,7 +242,7 @@ void fill_untouched(const std::vector<std::uint8_t>& touched, const SeenInk& see
     const bool agree =
         std::all_of(lattice.begin() + static_cast<std::ptrdiff_t>(first), lattice.begin() + static_cast<std::ptrdiff_t>(ends[r]),
                     [&](size_t pixel) { return share.pixels[pixel] == ink; });
-    for (const PixelRun& run : regions[r]) {
+    for (const UntouchedRun& run : regions[r]) {
       std::fill_n(share.pixels.begin() + static_cast<std::ptrdiff_t>(run.first), run.last - run.first, ink);
       for (size_t pixel = run.first; !agree && pixel < run.last; ++pixel) unclear.push_back(pixel);
     }

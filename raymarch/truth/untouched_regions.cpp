@@ -7,8 +7,8 @@
 namespace limn {
 namespace {
 
-std::vector<PixelRun> runs_of(const std::vector<std::uint8_t>& touched, size_t row, size_t width) {
-  std::vector<PixelRun> runs;
+std::vector<UntouchedRun> runs_of(const std::vector<std::uint8_t>& touched, size_t row, size_t width) {
+  std::vector<UntouchedRun> runs;
   const size_t end = (row + 1) * width;
   for (size_t at = row * width; at < end;) {
     const size_t first = at;
@@ -23,18 +23,18 @@ std::vector<PixelRun> runs_of(const std::vector<std::uint8_t>& touched, size_t r
 
 std::vector<PixelRegion> untouched_regions(const std::vector<std::uint8_t>& touched, int width, int height) {
   const auto w = static_cast<size_t>(width);
-  std::vector<std::vector<PixelRun>> rows(static_cast<size_t>(height));
+  std::vector<std::vector<UntouchedRun>> rows(static_cast<size_t>(height));
   parallel_for(size_t{0}, rows.size(), [&](size_t row) { rows[row] = runs_of(touched, row, w); });
-  std::vector<PixelRun> runs;
+  std::vector<UntouchedRun> runs;
   std::vector<size_t> joined;  // to a run before it, or itself
   const auto root = [&](size_t run) {
     while (joined[run] != run) run = joined[run] = joined[joined[run]];
     return run;
   };
   size_t above = 0, end_above = 0;
-  for (const std::vector<PixelRun>& row : rows) {
+  for (const std::vector<UntouchedRun>& row : rows) {
     const size_t first = runs.size();
-    for (const PixelRun& run : row) {
+    for (const UntouchedRun& run : row) {
       while (above < end_above && runs[above].last + w <= run.first) ++above;
       joined.push_back(runs.size());
       runs.push_back(run);

@@ -49,7 +49,7 @@ TEST(UntouchedRegions, AreThoseOfAFloodInItsOrder) {
     std::vector<int> found(touched.size(), -1);
     const std::vector<PixelRegion> regions = untouched_regions(touched, width, height);
     for (size_t k = 0; k < regions.size(); ++k)
-      for (const PixelRun& run : regions[k]) {
+      for (const UntouchedRun& run : regions[k]) {
         ASSERT_LT(run.first, run.last);
         ASSERT_LE(run.last, touched.size());
         for (size_t pixel = run.first; pixel < run.last; ++pixel) found[pixel] = static_cast<int>(k);

@@ -70,7 +70,10 @@ Chosen chosen_for(std::uint64_t seed) {
   object.world_from_object.linear[0][0] = uniform(0.5, 1.5);
   object.world_from_object.linear[1][0] = uniform(-0.3, 0.3);
   const Projection projection = random() % 2 ? Projection::perspective : Projection::orthographic;
-  const Camera camera = looking(object, {uniform(-1, 1), uniform(-1, 1), uniform(0.1, 1)}, std::exp(uniform(1.0, 4.0)), projection);
+  // One draw after the other: compilers order arguments as they like.
+  const double distance = std::exp(uniform(1.0, 4.0));
+  const double x = uniform(-1, 1), y = uniform(-1, 1), z = uniform(0.1, 1);
+  const Camera camera = looking(object, {x, y, z}, distance, projection);
   Chosen chosen{.asked_px = uniform(0.05, 0.5)};
   chosen.level = level_for_views(object, surface_kind("mesh"), {&camera, 1}, chosen.asked_px);
   chosen.measured_px = measured_px(object, chosen.level.level, camera);

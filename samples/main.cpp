@@ -10,10 +10,12 @@
 #include "samples/output/standard_streams.h"
 #include "samples/spec/flags.h"
 #include "sdf/error.h"
+#include "sdf/thread_places.h"
 
 int main(int argc, char** argv) {
   limn::keep_standard_streams();
   limn::install_interrupt_handlers();
+  limn::keep_threads_apart();
   // It would print lines of its own about meshes that the audit and our errors speak of.
   OpenSubdiv::Far::SetWarningCallback([](const char*) {});
   try {

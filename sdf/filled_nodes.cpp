@@ -31,16 +31,14 @@ Handle copied(const Handle& from) {
   return Handle(std::move(buffer));
 }
 
-/// Calls `write(n, value)` for each node of the block's that is filled or kept out, and sets the masks of those in the band.
-template <class Write, class ActiveAt>
-void apply(const FilledBlock& block, const Write& write, const ActiveAt& active) {
-  for (std::uint32_t word = 0; word < 8; ++word) {
+/// Into the values and the mask of a leaf, or of what will be one.
+void write_nodes(const FilledBlock& block, float* values, std::uint64_t* active) {
+  for (size_t word = 0; word < 8; ++word) {
     for (std::uint64_t nodes = block.filled[word] | block.kept_out[word]; nodes != 0; nodes &= nodes - 1) {
-      const std::uint32_t n = word * 64 + static_cast<std::uint32_t>(std::countr_zero(nodes));
-      write(n, block.values[n]);
+      const size_t n = 64 * word + static_cast<size_t>(std::countr_zero(nodes));
+      values[n] = block.values[n];
     }
-    std::uint64_t& own = active(word);
-    own = (own | block.filled[word]) & ~block.kept_out[word];
+    active[word] = (active[word] | block.filled[word]) & ~block.kept_out[word];
   }
 }
 
@@ -48,9 +46,7 @@ void apply(const FilledBlock& block, const Write& write, const ActiveAt& active)
 std::int64_t write_nodes(const FilledBlock& block, Leaf& leaf) {
   auto& data = *leaf.data();
   const auto before = static_cast<std::int64_t>(data.mValueMask.countOn());
-  apply(
-      block, [&](std::uint32_t n, float value) { data.mValues[n] = value; },
-      [&](std::uint32_t word) -> std::uint64_t& { return data.mValueMask.getWord<std::uint64_t>(static_cast<int>(word)); });
+  write_nodes(block, data.mValues, &data.mValueMask.getWord<std::uint64_t>(0));
   return static_cast<std::int64_t>(data.mValueMask.countOn()) - before;
 }
 
@@ -135,10 +131,7 @@ std::shared_ptr<LevelSetData> filled_anew(const LevelSet& level_set, const std::
     const nanovdb::FloatGrid::AccessorType accessor = grid.getAccessor();
     for (size_t i = part.first; i < part.last; ++i) {
       LevelSetBlock block = block_of(accessor, leaves.origins[i]);
-      if (leaves.filled[i] != nullptr)
-        apply(
-            *leaves.filled[i], [&](std::uint32_t n, float value) { block.values[n] = value; },
-            [&](std::uint32_t word) -> std::uint64_t& { return block.active[word]; });
+      if (leaves.filled[i] != nullptr) write_nodes(*leaves.filled[i], block.values, block.active);
       if (!is_plain(block, background)) plain = false;
       write(i, block);
     }

@@ -31,7 +31,7 @@ struct DistanceEvaluator {
 };
 
 /// Makes it one of this field, if it is not: neighbouring blocks often share a field, and so what evaluates it. The memory that one field
-/// was evaluated in, a quarter of a megabyte that is cleared when taken, serves the next.
+/// was evaluated in, a quarter of a megabyte, serves the next.
 void turn_to(const Field& field, std::optional<DistanceEvaluator>& distance);
 
 /// f at each point, to the last bit as FieldEvaluator::values() has it; points are filled up.

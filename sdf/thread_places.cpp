@@ -6,14 +6,16 @@
 
 #include <atomic>
 
-namespace limn::parallel_detail {
+namespace limn {
+namespace parallel_detail {
 
 #if defined(__linux__)
 namespace {
 
 constexpr int kMostParts = 16;
 
-std::atomic<int> first_processor{-1};  ///< Where the first loop of the process began.
+std::atomic<bool> are_kept_apart{false};
+std::atomic<int> first_processor{-1};  ///< Where the first loop of the process began; below 0: threads are left alone.
 std::atomic<bool> others_started{false};
 
 /// A thread of TBB's: on all processors that it may run on but that one. It is moved at once.
@@ -28,6 +30,7 @@ void leave(int processor) {
 }  // namespace
 
 int places_to_make() {
+  if (!are_kept_apart) return 0;
   int none = -1;
   return first_processor.compare_exchange_strong(none, ::sched_getcpu()) ? kMostParts : 0;
 }
@@ -49,4 +52,12 @@ int places_to_make() { return 0; }
 void place_thread() { unplaced = 0; }
 #endif
 
-}  // namespace limn::parallel_detail
+}  // namespace parallel_detail
+
+void keep_threads_apart() {
+#if defined(__linux__)
+  parallel_detail::are_kept_apart = true;
+#endif
+}
+
+}  // namespace limn

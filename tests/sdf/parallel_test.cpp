@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdlib>
 #include <functional>
 #include <numeric>
 #include <stdexcept>
@@ -162,10 +163,9 @@ std::vector<int> processors_of_this_thread() {
   return processors;
 }
 
-// Else a call may be over before its second thread has a processor to itself.
-TEST(Parallel, OtherThreadsKeepOffTheProcessorOnWhichTheFirstLoopBegan) {
-  const std::vector<int> all = processors_of_this_thread();
-  if (all.size() < 2) GTEST_SKIP() << "one processor";
+/// Two parts that wait for each other, so that two threads run them: how many processors less than `all` that of TBB's may use. Below 0:
+/// it may use others than those, or the own thread has not kept its own.
+int processors_left_by_the_other(const std::vector<int>& all) {
   std::vector<int> of_part[2];
   std::thread::id thread_of_part[2];
   std::atomic<int> arrived{0};
@@ -173,14 +173,21 @@ TEST(Parallel, OtherThreadsKeepOffTheProcessorOnWhichTheFirstLoopBegan) {
     of_part[part] = processors_of_this_thread();
     thread_of_part[part] = std::this_thread::get_id();
     ++arrived;
-    while (arrived < 2) std::this_thread::yield();  // two threads, then
+    while (arrived < 2) std::this_thread::yield();
   });
-  for (int part = 0; part < 2; ++part) {
-    const bool is_own = thread_of_part[part] == std::this_thread::get_id();
-    EXPECT_EQ(of_part[part].size(), is_own ? all.size() : all.size() - 1);
-    EXPECT_TRUE(std::includes(all.begin(), all.end(), of_part[part].begin(), of_part[part].end()));
-  }
-  EXPECT_EQ(processors_of_this_thread(), all);
+  const int other = thread_of_part[0] == std::this_thread::get_id() ? 1 : 0;
+  const bool holds = processors_of_this_thread() == all && of_part[1 - other] == all &&
+                     std::includes(all.begin(), all.end(), of_part[other].begin(), of_part[other].end());
+  return holds ? static_cast<int>(all.size() - of_part[other].size()) : -1;
+}
+
+// Else a call may be over before its second thread has a processor to itself. In processes of their own: threads are placed once.
+TEST(ParallelDeathTest, WhereAProgramAsksForItOtherThreadsKeepOffTheProcessorOnWhichTheFirstLoopBegan) {
+  const std::vector<int> all = processors_of_this_thread();
+  if (all.size() < 2) GTEST_SKIP() << "one processor";
+  testing::GTEST_FLAG(death_test_style) = "threadsafe";
+  EXPECT_EXIT(std::exit(processors_left_by_the_other(all) == 0 ? 0 : 1), testing::ExitedWithCode(0), "");
+  EXPECT_EXIT((keep_threads_apart(), std::exit(processors_left_by_the_other(all) == 1 ? 0 : 1)), testing::ExitedWithCode(0), "");
 }
 
 }  // namespace

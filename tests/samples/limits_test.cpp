@@ -111,7 +111,7 @@ TEST_P(Estimate, IsRightToAFactorOfTwoBeyondTheProgramItself) {
 INSTANTIATE_TEST_SUITE_P(
     Limits, Estimate,
     testing::Values(
-        EstimateCase{"level_set_384", {"render", "ellipsoid", "--size", "64x64", "--surface", "level_set", "--voxels", "384"}},
+        EstimateCase{"level_set_512", {"render", "ellipsoid", "--size", "64x64", "--surface", "level_set", "--voxels", "512"}},
         EstimateCase{"level_set_512_wide",
                      {"render", "ellipsoid", "--size", "64x64", "--surface", "level_set", "--voxels", "512", "--half-width", "6"}},
         EstimateCase{"gyroid_256", {"render", "gyroid", "--size", "64x64", "--surface", "level_set", "--voxels", "256"}},

@@ -7,6 +7,7 @@
 #include "raymarch/border.h"
 #include "raymarch/border/edge_visibility.h"
 #include "raymarch/border/hull_raster.h"
+#include "raymarch/border/specks.h"
 
 namespace limn {
 namespace {
@@ -90,14 +91,26 @@ void lay_ink(const WindowImage<float>& ink, Image<float>& coverage) {
   }
 }
 
+/// Where objects touch, and where a hull folds in a concave corner, rounding leaves pieces of ink on objects that are smaller than any
+/// outline. Of thinner lines such pieces are all that pixels show.
+void drop_specks_on_objects(const BorderInput& input, const ExtrudeSettings& settings, Image<float>& coverage) {
+  constexpr double kThin_px = 2.0;
+  if (widest_extrude_px(input, settings) < kThin_px) return;
+  drop_specks(
+      kSpeckPx, [&](size_t i) { return input.gbuffer.id.pixels[i] != 0; }, coverage);
+}
+
 void draw_objects(const BorderInput& input, const ExtrudeSettings& settings, HullNotes* notes, Border& border) {
   const EdgeVisibility view(input);
   const size_t objects = input.model.surfaces.size();
-  if (objects == 1) return lay_ink(ink_one(input, 0, settings, view, notes), border.coverage);
+  if (objects == 1) {
+    lay_ink(ink_one(input, 0, settings, view, notes), border.coverage);
+    return drop_specks_on_objects(input, settings, border.coverage);
+  }
   const ExtrudeGroups groups(input, settings);
   for (size_t object = 0; object < objects; ++object) groups.lay(object, ink_one(input, object, settings, view, notes), border.coverage);
   groups.draw_seams(border.coverage);
-  groups.drop_specks(border.coverage);
+  drop_specks_on_objects(input, settings, border.coverage);
   if (settings.groups.by == GroupBy::all) add_group_note("extrude", input, border.notes);
   if (settings.groups.hidden) groups.draw_hidden(border);
 }

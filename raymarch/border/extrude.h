@@ -24,6 +24,9 @@ struct ExtrudeSettings {
 /// Width of the outline of object `object` (index from 0) at depth `z`.
 double extrude_width_px(const BorderInput& input, size_t object, const ExtrudeSettings& settings, double z);
 
+/// Width of the widest outline of the picture.
+double widest_extrude_px(const BorderInput& input, const ExtrudeSettings& settings);
+
 /// A point of render space in camera axes: x right, y up, z the depth.
 glm::dvec3 in_camera_axes(const Camera& camera, const glm::dvec3& p);
 /// A mesh grown: one point for each corner, in camera axes. `render_from_object` is about the object's origin; `camera` is in render
@@ -71,8 +74,6 @@ class ExtrudeGroups {
   /// Lays what an object's ink shows over `coverage`, as far as it is an outline of its group.
   void lay(size_t object, const WindowImage<float>& ink, Image<float>& coverage) const;
   void draw_seams(Image<float>& coverage) const;
-  /// Takes away pieces of ink on objects that are smaller than any outline: where objects touch, rounding leaves some beside the line.
-  void drop_specks(Image<float>& coverage) const;
   void draw_hidden(Border& border) const;
 
  private:

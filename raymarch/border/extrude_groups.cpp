@@ -11,15 +11,6 @@ namespace {
 /// Hulls come out of touching surfaces beyond their own width where corners are mitred.
 int reach_of(double width_px) { return std::min(kLargestReach_px, static_cast<int>(std::ceil(2.0 * width_px)) + 2); }
 
-double widest_px(const BorderInput& input, const ExtrudeSettings& settings) {
-  if (settings.space == ExtrudeSpace::clip) return settings.width_px;
-  const auto& depths = input.gbuffer.depth.pixels;
-  const double nearest = *std::min_element(depths.begin(), depths.end());
-  double widest = 0.0;
-  for (size_t k = 0; k < input.model.surfaces.size(); ++k) widest = std::max(widest, extrude_width_px(input, k, settings, nearest));
-  return std::min(widest, 0.5 * kLargestReach_px - 2.0);
-}
-
 }  // namespace
 
 double extrude_width_px(const BorderInput& input, size_t object, const ExtrudeSettings& settings, double z) {
@@ -30,8 +21,17 @@ double extrude_width_px(const BorderInput& input, size_t object, const ExtrudeSe
   return std::isfinite(z) ? settings.object_width * scale * pixels_per_unit_at(input.camera, z) : 0.0;
 }
 
+double widest_extrude_px(const BorderInput& input, const ExtrudeSettings& settings) {
+  if (settings.space == ExtrudeSpace::clip) return settings.width_px;
+  const auto& depths = input.gbuffer.depth.pixels;
+  const double nearest = *std::min_element(depths.begin(), depths.end());
+  double widest = 0.0;
+  for (size_t k = 0; k < input.model.surfaces.size(); ++k) widest = std::max(widest, extrude_width_px(input, k, settings, nearest));
+  return std::min(widest, 0.5 * kLargestReach_px - 2.0);
+}
+
 ExtrudeGroups::ExtrudeGroups(const BorderInput& input, const ExtrudeSettings& settings)
-    : input_(input), settings_(settings), widest_px_(widest_px(input, settings)) {
+    : input_(input), settings_(settings), widest_px_(widest_extrude_px(input, settings)) {
   if (settings.groups.by != GroupBy::all) objects_.emplace(input, GroupBy::object);
 }
 
@@ -92,34 +92,6 @@ void ExtrudeGroups::draw_seams(Image<float>& coverage) const {
         const double width = extrude_width_px(input_, owner, settings_, double{seen.depth.pixels[sides->inner]}) * kSubPixels;
         if (static_cast<double>(square) <= width * width && ink_in_front(groups, group, seam, x, y)) coverage.pixels[at] = 1.0f;
       }
-    }
-  }
-}
-
-void ExtrudeGroups::drop_specks(Image<float>& coverage) const {
-  constexpr size_t kSpeck_px = 5;
-  // Of thinner lines such pieces are all that pixels show.
-  if (!objects_ || widest_px_ < 2.0) return;
-  const GBuffer& seen = input_.gbuffer;
-  std::vector<glm::ivec2> piece;
-  const auto is_new = [&](const glm::ivec2& p) { return std::find(piece.begin(), piece.end(), p) == piece.end(); };
-  // The piece from (x, y) on, as far as it is none too many: a larger one is left half way.
-  const auto gather = [&](int x, int y) {
-    piece.assign(1, {x, y});
-    for (size_t k = 0; k < piece.size() && piece.size() <= kSpeck_px; ++k) {
-      for (int v = piece[k].y - 1; v <= piece[k].y + 1; ++v) {
-        for (int u = piece[k].x - 1; u <= piece[k].x + 1; ++u) {
-          if (coverage.inside(u, v) && coverage.at(u, v) > 0.0f && is_new({u, v})) piece.emplace_back(u, v);
-        }
-      }
-    }
-    const auto on_object = [&](const glm::ivec2& p) { return seen.id.at(p.x, p.y) != 0; };
-    return piece.size() <= kSpeck_px && std::all_of(piece.begin(), piece.end(), on_object);
-  };
-  for (int y = 0; y < coverage.height; ++y) {
-    for (int x = 0; x < coverage.width; ++x) {
-      if (coverage.at(x, y) == 0.0f || !gather(x, y)) continue;
-      for (const glm::ivec2& p : piece) coverage.at(p.x, p.y) = 0.0f;
     }
   }
 }

@@ -1,10 +1,11 @@
-// Pieces of line that are too short to be lines: counted against pictures drawn by hand, and said where a grid breaks a crease.
+// Pieces of line that are too short to be lines: counted and taken away in pictures drawn by hand, and said where a grid breaks a crease.
 
 #include "raymarch/border/broken_lines.h"
 
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
+#include "raymarch/border/specks.h"
 #include "tests/random_seed.h"
 #include "tests/raymarch/image_buffers.h"
 
@@ -20,7 +21,7 @@ Image<float> ink_of(const std::vector<std::string>& rows) {
 
 constexpr auto kAll = [](size_t) { return true; };
 
-TEST(BrokenLines, CountsPiecesByHand) {
+TEST(Specks, AreCountedAndTakenAwayByHand) {
   const Image<float> ink = ink_of({"##....#...#", "..#...#....", "......#...#", "#.....#..#.", "......#.#..", "#.....#...."});
   // Top left 3, the column of 6, a single pixel at the top right, the diagonal of 3, two single pixels at the left.
   EXPECT_EQ(count_specks(ink, 6, kAll), 5);
@@ -28,36 +29,59 @@ TEST(BrokenLines, CountsPiecesByHand) {
   EXPECT_EQ(count_specks(ink, 3, kAll), 3);
   EXPECT_EQ(count_specks(ink, 1, kAll), 0);
   // A piece counts where all of it does.
-  EXPECT_EQ(count_specks(ink, 6, [](size_t i) { return i != 0; }), 4);
+  const auto not_first = [](size_t i) { return i != 0; };
+  EXPECT_EQ(count_specks(ink, 6, not_first), 4);
+  Image<float> left = ink;
+  drop_specks(6, not_first, left);
+  EXPECT_EQ(left.pixels, ink_of({"##....#....", "..#...#....", "......#....", "......#....", "......#....", "......#...."}).pixels);
 }
 
-TEST(BrokenLines, CountsAsFloodFillDoesInPicturesOfManyBands) {
-  const std::uint64_t seed = random_seed();
-  std::mt19937_64 random(seed);
-  Image<float> ink(90, 150, 0.0f);
-  for (float& p : ink.pixels) p = random() % 5 == 0;
+/// The pieces of a picture, each with all of its pixels.
+std::vector<std::vector<size_t>> flooded(const Image<float>& ink) {
+  std::vector<std::vector<size_t>> pieces;
   Image<std::uint8_t> taken(ink.width, ink.height, 0);
-  std::int64_t expected = 0;
   for (size_t i = 0; i < ink.size(); ++i) {
     if (ink.pixels[i] == 0.0f || taken.pixels[i]) continue;
-    std::vector<size_t> stack{i};
+    std::vector<size_t>& piece = pieces.emplace_back(1, i);
     taken.pixels[i] = 1;
-    int size = 0;
-    while (!stack.empty()) {
-      const int x = static_cast<int>(stack.back()) % ink.width, y = static_cast<int>(stack.back()) / ink.width;
-      stack.pop_back();
-      ++size;
+    for (size_t k = 0; k < piece.size(); ++k) {
+      const int x = static_cast<int>(piece[k]) % ink.width, y = static_cast<int>(piece[k]) / ink.width;
       for (int v = y - 1; v <= y + 1; ++v)
         for (int u = x - 1; u <= x + 1; ++u) {
           if (!ink.inside(u, v) || ink.at(u, v) == 0.0f || taken.at(u, v)) continue;
           taken.at(u, v) = 1;
-          stack.push_back(ink.index(u, v));
+          piece.push_back(ink.index(u, v));
         }
     }
-    expected += size < kSpeckPx;
   }
-  EXPECT_EQ(count_specks(ink, kSpeckPx, kAll), expected) << "seed " << seed;
-  EXPECT_GT(expected, 100);
+  return pieces;
+}
+
+TEST(Specks, AreWhatFloodFillFindsInPicturesOfManyBands) {
+  const std::uint64_t seed = random_seed();
+  std::mt19937_64 random(seed);
+  Image<float> ink(90, 150, 0.0f);
+  for (float& p : ink.pixels) p = random() % 5 == 0;
+  // What lies on nothing keeps its piece.
+  Image<std::uint8_t> counts(ink.width, ink.height, 0);
+  for (std::uint8_t& p : counts.pixels) p = random() % 10 != 0;
+  const auto counted = [&](size_t i) { return counts.pixels[i] != 0; };
+  std::int64_t small = 0, small_and_counted = 0;
+  Image<float> expected = ink;
+  for (const std::vector<size_t>& piece : flooded(ink)) {
+    if (static_cast<int>(piece.size()) >= kSpeckPx) continue;
+    ++small;
+    if (!std::all_of(piece.begin(), piece.end(), counted)) continue;
+    ++small_and_counted;
+    for (const size_t i : piece) expected.pixels[i] = 0.0f;
+  }
+  EXPECT_EQ(count_specks(ink, kSpeckPx, kAll), small) << "seed " << seed;
+  EXPECT_EQ(count_specks(ink, kSpeckPx, counted), small_and_counted) << "seed " << seed;
+  Image<float> left = ink;
+  drop_specks(kSpeckPx, counted, left);
+  EXPECT_EQ(left.pixels, expected.pixels) << "seed " << seed;
+  EXPECT_GT(small_and_counted, 100);
+  EXPECT_GT(small, small_and_counted + 50);
 }
 
 std::string said(double voxel_size) {

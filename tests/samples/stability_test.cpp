@@ -89,6 +89,22 @@ TEST(StabilityCorpus, ContoursThatWentToAndFroBesideTheirCuspsAreRight) {
   }
 }
 
+/// Draws of which single pixels of a hull's folds stood beside the fold, in the picture of a mesh, a field or a level set.
+TEST(StabilityCorpus, FoldsOfExtrudeInConcaveCornersAreOnePiece) {
+  const std::vector<StabilityCase> corpus = stability_corpus();
+  const auto corners =
+      std::find_if(corpus.begin(), corpus.end(), [](const StabilityCase& one) { return one.text.name == "concave_corners"; });
+  ASSERT_NE(corners, corpus.end());
+  StabilityRunSettings settings;
+  settings.seed = 1000;
+  settings.draws = 53;
+  settings.surfaces = {"analytic", "level_set", "mesh"};
+  settings.methods = {"extrude"};
+  const StabilityResults run = run_stability({*corners}, settings);
+  EXPECT_EQ(run.cells.size(), 2u * 3u * 53u);
+  for (const StabilityCell& cell : run.cells) EXPECT_EQ(cell.outcome, StabilityOutcome::held) << words_of(cell);
+}
+
 /// LIMN_ALL=1: everything the corpus holds, several draws; else one case of each check, drawn at random.
 TEST(StabilityCorpus, NothingIsWrongWhateverTheSeed) {
   const bool all = std::getenv("LIMN_ALL") != nullptr;

@@ -139,6 +139,15 @@ struct SurfaceOffset {
   struct Surface (*make)(const void* state, const OffsetWidth& width) = nullptr;
 };
 
+/// Which places of an offset surface are asked for, and how finely.
+struct MeetingRequest {
+  Camera camera{};           ///< Eye in render space.
+  bool facing_away = false;  ///< Only where it is met from its inside: N . direction >= 0.
+  double side_px = 8.0;      ///< Boxes are divided until their sides are no longer in the picture.
+  /// False for a box that is good as it is. Called from many threads at a time; empty: none is.
+  std::function<bool(const Box&)> is_divided{};
+};
+
 /// One object, modelled. `trace` is called once for each batch and from many threads at a time; scratch memory is the callee's, on its
 /// stack or per call.
 struct Surface {
@@ -147,6 +156,8 @@ struct Surface {
   void (*trace)(const void* state, const RayBatch& rays, HitBatch& hits) = nullptr;
   /// The same as pictures are traced: in packets, in single precision, for rays anywhere. Null: `trace` is as quick.
   void (*trace_packets)(const void* state, const RayBatch& rays, HitBatch& hits) = nullptr;
+  /// Of an offset surface: boxes (render space) that hold all places where rays from the camera's eye meet it. Null: anywhere.
+  std::vector<Box> (*where_met)(const void* state, const MeetingRequest& request) = nullptr;
   /// Makes what both need for rays anywhere, on the threads of the surrounding arena: in a loop over such rays the first would make it
   /// while all others wait. Null: nothing to make.
   void (*prepare)(const void* state) = nullptr;

@@ -28,7 +28,8 @@ ExtrudeSettings read_settings(const Parameters& parameters) {
 }
 
 bool grows_alike(const ExtrudeSettings& a, const ExtrudeSettings& b) {
-  return a.direction == b.direction && a.space == b.space && a.width_px == b.width_px && a.object_width == b.object_width;
+  return a.direction == b.direction && a.space == b.space && a.mask == b.mask && a.width_px == b.width_px &&
+         a.object_width == b.object_width;
 }
 
 /// Of a mesh about its own origin, of a field (which has no object space left) about the middle of its bounds.

@@ -1,6 +1,8 @@
 #pragma once
 // The parts of the method `extrude`.
 
+#include <optional>
+
 #include "raymarch/border/object_groups.h"
 #include "raymarch/mesh/polygons.h"
 #include "sdf/large_pages.h"
@@ -38,6 +40,7 @@ PassingVector<glm::dvec3> extrude_corners(const Polygons& polygons, const Affine
 struct OffsetShell {
   OffsetWidth width{};
   Surface surface{};
+  std::optional<std::vector<Box>> places{};  ///< Where rays that become ink meet it, render space; unset: anywhere.
 };
 /// Null where the width is 0. Throws InputError where the object's distances do not reach that far.
 std::shared_ptr<const OffsetShell> offset_shell(const BorderInput& input, size_t object, const ExtrudeSettings& settings);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "raymarch/border/extrude.h"
+#include "raymarch/border/extrude_pixels.h"
 #include "raymarch/gbuffer/picture_rows.h"
 #include "raymarch/scene/covered_pixels.h"
 
@@ -74,7 +75,8 @@ void set_ray(const Shell& shell, int x, int y, size_t window_pixel, ShellBatch& 
   batch.rays.set(i, origin, ray.direction, 0.0, std::max(t_max, 0.0));
 }
 
-/// A stencil wants rays that enter the shell; the inverted hull those that leave it again before anything is seen: its back faces.
+/// Inks the batch's pixels, and empties it. A stencil wants rays that enter the shell; the inverted hull those that leave it again before
+/// anything is seen: its back faces.
 void follow(const Shell& shell, ShellBatch& batch, WindowImage<float>& ink) {
   for (int passage = 0; passage < kMostPassages; ++passage) {
     std::fill_n(batch.hits.status, batch.rays.count, HitStatus::miss);
@@ -97,8 +99,9 @@ void follow(const Shell& shell, ShellBatch& batch, WindowImage<float>& ink) {
       batch.rays.t_max[i] = 0.0f;
       batch.rays.t_min[i] = 0.0f;
     }
-    if (!any) return;
+    if (!any) break;
   }
+  batch.rays.count = 0;
 }
 
 }  // namespace
@@ -107,7 +110,16 @@ std::shared_ptr<const OffsetShell> offset_shell(const BorderInput& input, size_t
   const OffsetWidth width = offset_width(input, object, settings, camera_of(input));
   if (width.zero()) return nullptr;
   const SurfaceOffset& offset = input.model.surfaces[object].offset;
-  return std::make_shared<const OffsetShell>(OffsetShell{width, offset.make(offset.state.get(), width)});
+  auto shell = std::make_shared<OffsetShell>(OffsetShell{width, offset.make(offset.state.get(), width), {}});
+  if (shell->surface.where_met == nullptr) return shell;
+  const Camera camera = camera_of(input);
+  const SeenDepths depths(input.gbuffer, camera);
+  // What this sample sees in front of a box the others do, too, but for the pixels beside.
+  const MeetingRequest request{.camera = camera,
+                               .facing_away = settings.mask == ExtrudeMask::back_faces,
+                               .is_divided = [&](const Box& box) { return !depths.pixels_before(box, 1.0).empty(); }};
+  shell->places = shell->surface.where_met(shell->surface.state.get(), request);
+  return shell;
 }
 
 WindowImage<float> ink_offset(const BorderInput& input, size_t object, const ExtrudeSettings& settings, const OffsetShell& offset) {
@@ -118,17 +130,20 @@ WindowImage<float> ink_offset(const BorderInput& input, size_t object, const Ext
   double radius = std::numeric_limits<double>::infinity();
   if (surface.bounds.finite()) radius = 1.01 * glm::length(glm::max(glm::abs(surface.bounds.lower), glm::abs(surface.bounds.upper)));
   const Shell shell{input, surface, offset.width, camera, radius, static_cast<std::int32_t>(object) + 1, settings.mask};
+  WindowImage<std::uint8_t> asked{};
+  if (offset.places) asked = pixels_before(*offset.places, SeenDepths(input.gbuffer, camera), ink.window);
   for_each_band(ink.window.height(), [&](int y0, int y1) {
     ShellBatch batch;
     batch.rays.count = 0;
     for (int y = y0; y < y1; ++y) {
       for (int x = 0; x < ink.window.width(); ++x) {
-        set_ray(shell, ink.window.x0 + x, ink.window.y0 + y, ink.values.index(x, y), batch);
-        if (batch.rays.count < kRayBatchSize && !(y + 1 == y1 && x + 1 == ink.window.width())) continue;
-        follow(shell, batch, ink);
-        batch.rays.count = 0;
+        const size_t pixel = ink.values.index(x, y);
+        if (offset.places && asked.values.pixels[pixel] == 0) continue;
+        set_ray(shell, ink.window.x0 + x, ink.window.y0 + y, pixel, batch);
+        if (batch.rays.count == kRayBatchSize) follow(shell, batch, ink);
       }
     }
+    if (batch.rays.count > 0) follow(shell, batch, ink);
   });
   return ink;
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "raymarch/level_set/level_places.h"
 #include "raymarch/level_set/single_rays.h"
 #include "raymarch/level_set/walk.h"
 #include "raymarch/scene/curvature.h"
@@ -153,6 +154,11 @@ void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
   }
 }
 
+std::vector<Box> where_met(const void* opaque, const MeetingRequest& request) {
+  const State& state = *static_cast<const State*>(opaque);
+  return level_meeting_places(state.level_set.data(), state.walked, state.crossed, request);
+}
+
 /// What is the same for all packets, but for the view.
 BrickTrace brick_trace(const State& state) {
   BrickTrace how;
@@ -293,6 +299,7 @@ Surface level_set_marcher(const LevelSet& level_set, const Affine& world_from_ob
   }
   Surface surface;
   surface.trace = trace;
+  if (!state->crossed.cells.empty()) surface.where_met = where_met;
   if (state->bricks) {
     surface.trace_packets = trace_packets;
     surface.prepare = [](const void* opaque) { static_cast<void>(singles_of(*static_cast<const State*>(opaque))); };

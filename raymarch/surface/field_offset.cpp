@@ -2,10 +2,9 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
-#include <array>
-
 #include "raymarch/analytic/clip_ray.h"
 #include "raymarch/surface/offset.h"
+#include "raymarch/surface/shell_lanes.h"
 #include "sdf/level_set_distance.h"
 
 namespace limn {
@@ -26,40 +25,16 @@ struct State {
   mutable tbb::enumerable_thread_specific<DistanceEvaluator> evaluators;
 };
 
-struct Lane {
-  int index = 0, steps = 0;
-  glm::dvec3 origin{0.0}, direction{0.0};
-  double t = 0.0, t_end = 0.0;
-  double side = 0.0;  ///< 1 where the ray started beyond the offset surface, -1 within; 0 unknown.
-};
-
-enum class Fate { going, missed, hit };
-
-/// The distance bounds how far the surface is, and the width changes no faster than its slope: a step that reaches no farther misses
-/// nothing. Distances that are right to third order only get shorter steps.
-Fate advance(const State& state, double distance, Lane& lane) {
-  const double width = state.width.at(lane.origin + lane.t * lane.direction);
-  const double beyond = distance - width, touch = kTouch * width;
-  // A ray that grazes the surface hovers about it; between entering and leaving lies as much again, or it would do both at every step.
-  if (lane.side == 0.0) lane.side = beyond <= touch ? -1.0 : 1.0;
-  const double left = lane.side > 0.0 ? beyond - touch : 2.0 * touch - beyond;
-  if (left <= 0.0) return Fate::hit;
-  if (++lane.steps > state.max_steps) return Fate::hit;  // it has crept along the surface all the way
-  const double trust = state.field.traits().exact_distance ? 1.0 : 0.8;
-  const double least = lane.side > 0.0 ? 0.5 * touch : kLeast * width;
-  lane.t += std::max(trust * left / (1.0 + state.width.slope_bound()), least);
-  return lane.t < lane.t_end ? Fate::going : Fate::missed;
-}
-
-void write_hits(FieldEvaluator& evaluator, std::span<const Lane> found, const RayBatch& rays, HitBatch& hits) {
-  for (const Lane& lane : found) {
-    const int i = lane.index;
-    if (!(static_cast<float>(lane.t) < rays.t_max[i])) continue;
-    const glm::dvec3 gradient = evaluator.jet(lane.origin + lane.t * lane.direction).gradient;
+void write_hits(FieldEvaluator& evaluator, const FoundLanes& found, const RayBatch& rays, HitBatch& hits) {
+  for (size_t k = 0; k < found.count; ++k) {
+    const auto& [i, t, side] = found.lanes[k];
+    if (!(static_cast<float>(t) < rays.t_max[i])) continue;
+    const glm::dvec3 origin(rays.origin(i)), direction(rays.direction(i));
+    const glm::dvec3 gradient = evaluator.jet(origin + t * direction).gradient;
     const double length = glm::length(gradient);
-    const glm::vec3 normal(length > 0.0 && std::isfinite(length) ? gradient / length : -lane.side * lane.direction);
+    const glm::vec3 normal(length > 0.0 && std::isfinite(length) ? gradient / length : -side * direction);
     hits.status[i] = HitStatus::hit;
-    hits.t[i] = static_cast<float>(lane.t);
+    hits.t[i] = static_cast<float>(t);
     hits.normal_x[i] = normal.x;
     hits.normal_y[i] = normal.y;
     hits.normal_z[i] = normal.z;
@@ -68,31 +43,43 @@ void write_hits(FieldEvaluator& evaluator, std::span<const Lane> found, const Ra
   }
 }
 
+/// The rays that come near the field.
+void start_lanes(const Box& clip, const RayBatch& rays, ShellLanes& lanes) {
+  for (int i = 0; i < rays.count; ++i) {
+    const glm::dvec3 origin(rays.origin(i)), direction(rays.direction(i));
+    double t = rays.t_min[i], t_end = rays.t_max[i];
+    if (!(t < t_end && clip_ray(clip, origin, direction, t, t_end))) continue;
+    const size_t to = lanes.count++;
+    for (int axis = 0; axis < 3; ++axis) lanes.origin[axis][to] = origin[axis], lanes.direction[axis][to] = direction[axis];
+    lanes.t[to] = t, lanes.t_end[to] = t_end, lanes.side[to] = 0.0, lanes.index[to] = i;
+  }
+}
+
 void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
   const State& state = *static_cast<const State*>(opaque);
-  std::array<Lane, kRayBatchSize> lanes, found;
-  std::array<glm::dvec3, kRayBatchSize> points;
-  std::array<double, kRayBatchSize> distances;
-  size_t active = 0, found_count = 0;
-  for (int i = 0; i < rays.count; ++i) {
-    Lane lane{i, 0, glm::dvec3(rays.origin(i)), glm::dvec3(rays.direction(i)), rays.t_min[i], rays.t_max[i], 0.0};
-    if (lane.t < lane.t_end && clip_ray(state.clip, lane.origin, lane.direction, lane.t, lane.t_end)) lanes[active++] = lane;
-  }
+  ShellLanes lanes;
+  start_lanes(state.clip, rays, lanes);
+  FoundLanes found;
+  LanePoints points;
+  LaneNumbers distances;
   DistanceEvaluator& distance = state.evaluators.local();
-  while (active > 0) {
-    for (size_t k = 0; k < active; ++k) points[k] = lanes[k].origin + lanes[k].t * lanes[k].direction;
-    signed_distances(distance, std::span<const glm::dvec3>(points).first(active), 2.0 * state.largest_width,
-                     std::span(distances).first(active));
-    size_t kept = 0;
-    for (size_t k = 0; k < active; ++k) {
-      Lane lane = lanes[k];
-      const Fate fate = advance(state, distances[k], lane);
-      if (fate == Fate::going) lanes[kept++] = lane;
-      if (fate == Fate::hit) found[found_count++] = lane;
-    }
-    active = kept;
+  ShellSteps how{.width = state.width,
+                 .touch = kTouch,
+                 .least = kLeast,
+                 .trust = state.field.traits().exact_distance ? 1.0 : 0.8,
+                 .are_the_last = false};
+  for (int step = 1; lanes.count > 0; ++step) {
+    how.are_the_last = step > state.max_steps;
+    place_lanes(lanes, points);
+    signed_distances(distance, points, 2.0 * state.largest_width, distances);
+    advance_lanes(how, points, distances, lanes, found);
   }
-  write_hits(distance.evaluator, std::span<const Lane>(found).first(found_count), rays, hits);
+  write_hits(distance.evaluator, found, rays, hits);
+}
+
+std::vector<Box> where_met(const void* opaque, const MeetingRequest& request) {
+  const State& state = *static_cast<const State*>(opaque);
+  return field_meeting_places(state.field, state.clip, state.width, request);
 }
 
 struct Maker {
@@ -118,6 +105,7 @@ Surface make(const void* opaque, const OffsetWidth& width) {
   Surface surface;
   surface.bounds = state->clip;
   surface.trace = trace;
+  surface.where_met = where_met;
   surface.info.kind = "offset";
   surface.state = std::move(state);
   return surface;

@@ -144,7 +144,7 @@ struct MeetingRequest {
   Camera camera{};           ///< Eye in render space.
   bool facing_away = false;  ///< Only where it is met from its inside: N . direction >= 0.
   double side_px = 8.0;      ///< Boxes are divided until their sides are no longer in the picture.
-  /// False for a box that is good as it is. Called from many threads at a time; empty: none is.
+  /// False for a box that is good as it is, however long. Called from many threads at a time; may be empty.
   std::function<bool(const Box&)> is_divided{};
 };
 

@@ -28,8 +28,7 @@ ExtrudeSettings read_settings(const Parameters& parameters) {
 }
 
 bool grows_alike(const ExtrudeSettings& a, const ExtrudeSettings& b) {
-  return a.direction == b.direction && a.space == b.space && a.mask == b.mask && a.width_px == b.width_px &&
-         a.object_width == b.object_width;
+  return a.direction == b.direction && a.space == b.space && a.width_px == b.width_px && a.object_width == b.object_width;
 }
 
 /// Of a mesh about its own origin, of a field (which has no object space left) about the middle of its bounds.
@@ -94,9 +93,9 @@ void lay_ink(const WindowImage<float>& ink, Image<float>& coverage) {
 
 /// Where objects touch, and where a hull folds in a concave corner, rounding leaves pieces of ink on objects that are smaller than any
 /// outline. Of thinner lines such pieces are all that pixels show.
-void drop_specks_on_objects(const BorderInput& input, const ExtrudeSettings& settings, Image<float>& coverage) {
+void drop_specks_on_objects(const BorderInput& input, double width_px, Image<float>& coverage) {
   constexpr double kThin_px = 2.0;
-  if (widest_extrude_px(input, settings) < kThin_px) return;
+  if (width_px < kThin_px) return;
   drop_specks(
       kSpeckPx, [&](size_t i) { return input.gbuffer.id.pixels[i] != 0; }, coverage);
 }
@@ -106,12 +105,12 @@ void draw_objects(const BorderInput& input, const ExtrudeSettings& settings, Hul
   const size_t objects = input.model.surfaces.size();
   if (objects == 1) {
     lay_ink(ink_one(input, 0, settings, view, notes), border.coverage);
-    return drop_specks_on_objects(input, settings, border.coverage);
+    return drop_specks_on_objects(input, widest_extrude_px(input, settings), border.coverage);
   }
   const ExtrudeGroups groups(input, settings);
   for (size_t object = 0; object < objects; ++object) groups.lay(object, ink_one(input, object, settings, view, notes), border.coverage);
   groups.draw_seams(border.coverage);
-  drop_specks_on_objects(input, settings, border.coverage);
+  drop_specks_on_objects(input, groups.widest_px(), border.coverage);
   if (settings.groups.by == GroupBy::all) add_group_note("extrude", input, border.notes);
   if (settings.groups.hidden) groups.draw_hidden(border);
 }
@@ -156,16 +155,22 @@ std::string unsupported(const SceneModel& model, const Scene&) {
 }  // namespace
 
 std::shared_ptr<const SharedExtrusion> extrusion_of(const BorderInput& input, size_t object, const ExtrudeSettings& settings) {
+  const Surface& surface = input.model.surfaces[object];
+  const OffsetShell* alike = nullptr;
   if (input.shared != nullptr) {
-    for (const auto& kept : input.shared->extrusions)
-      if (kept->object == object && grows_alike(kept->settings, settings)) return kept;
+    for (const auto& kept : input.shared->extrusions) {
+      if (kept->object != object || !grows_alike(kept->settings, settings)) continue;
+      // Only the places where rays of a shell become ink hang on the mask.
+      if (!kept->shell || kept->settings.mask == settings.mask) return kept;
+      alike = kept->shell.get();
+    }
   }
   auto extrusion = std::make_shared<SharedExtrusion>(SharedExtrusion{object, settings});
-  if (const Surface& surface = input.model.surfaces[object]; surface.polygons)
+  if (surface.polygons)
     extrusion->grown =
         extrude_corners(*surface.polygons, render_from_object(input, object), settings, moved(input.camera, input.model.render_origin));
   else
-    extrusion->shell = offset_shell(input, object, settings);
+    extrusion->shell = offset_shell(input, object, settings, alike);
   if (input.shared != nullptr) input.shared->extrusions.push_back(extrusion);
   return extrusion;
 }

@@ -42,8 +42,10 @@ struct OffsetShell {
   Surface surface{};
   std::optional<std::vector<Box>> places{};  ///< Where rays that become ink meet it, render space; unset: anywhere.
 };
-/// Null where the width is 0. Throws InputError where the object's distances do not reach that far.
-std::shared_ptr<const OffsetShell> offset_shell(const BorderInput& input, size_t object, const ExtrudeSettings& settings);
+/// Null where the width is 0. `alike`: one of another mask, whose surface serves, too; may be null. Throws InputError where the object's
+/// distances do not reach that far.
+std::shared_ptr<const OffsetShell> offset_shell(const BorderInput& input, size_t object, const ExtrudeSettings& settings,
+                                                const OffsetShell* alike = nullptr);
 /// Ink of the offset surface of object `object` (index from 0), where it can come to.
 WindowImage<float> ink_offset(const BorderInput& input, size_t object, const ExtrudeSettings& settings, const OffsetShell& offset);
 
@@ -78,6 +80,7 @@ class ExtrudeGroups {
   void lay(size_t object, const WindowImage<float>& ink, Image<float>& coverage) const;
   void draw_seams(Image<float>& coverage) const;
   void draw_hidden(Border& border) const;
+  double widest_px() const { return widest_px_; }
 
  private:
   const BorderInput& input_;

@@ -106,11 +106,12 @@ void follow(const Shell& shell, ShellBatch& batch, WindowImage<float>& ink) {
 
 }  // namespace
 
-std::shared_ptr<const OffsetShell> offset_shell(const BorderInput& input, size_t object, const ExtrudeSettings& settings) {
+std::shared_ptr<const OffsetShell> offset_shell(const BorderInput& input, size_t object, const ExtrudeSettings& settings,
+                                                const OffsetShell* alike) {
   const OffsetWidth width = offset_width(input, object, settings, camera_of(input));
   if (width.zero()) return nullptr;
   const SurfaceOffset& offset = input.model.surfaces[object].offset;
-  auto shell = std::make_shared<OffsetShell>(OffsetShell{width, offset.make(offset.state.get(), width), {}});
+  auto shell = std::make_shared<OffsetShell>(OffsetShell{width, alike ? alike->surface : offset.make(offset.state.get(), width), {}});
   if (shell->surface.where_met == nullptr) return shell;
   const Camera camera = camera_of(input);
   const SeenDepths depths(input.gbuffer, camera);

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "raymarch/scene/covered_pixels.h"
 #include "sdf/parallel.h"
 
 namespace limn {
@@ -11,26 +12,6 @@ namespace {
 /// Rays are traced in single precision: by so much they may miss their pixel's middle.
 constexpr double kBeside_px = 0.02;
 constexpr double kRounding = 1e-5;  // of depths
-
-/// The image of a box, pixels, and the depth of its nearest point; nothing where it reaches to the eye.
-struct Seen {
-  Box image{};
-  double nearest = std::numeric_limits<double>::infinity();
-};
-std::optional<Seen> image_of(const Box& box, const Camera& camera) {
-  if (!box.finite()) return std::nullopt;
-  Seen seen;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 p(corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
-                       corner & 4 ? box.upper.z : box.lower.z);
-    const glm::dvec3 at = project(camera, p);
-    // So near that the projection has few digits left counts as behind.
-    if (camera.projection == Projection::perspective && !(at.z > 1e-6 * box.radius())) return std::nullopt;
-    seen.image = include(seen.image, {at.x, at.y, 0.0});
-    seen.nearest = std::min(seen.nearest, at.z);
-  }
-  return seen;
-}
 
 }  // namespace
 
@@ -49,14 +30,14 @@ SeenDepths::SeenDepths(const GBuffer& seen, const Camera& camera)
 }
 
 PixelWindow SeenDepths::pixels_before(const Box& box, double beside_px) const {
-  const std::optional<Seen> at = image_of(box, camera_);
+  const std::optional<BoxImage> at = image_of(box, camera_);
   if (!at) return {0, 0, seen_.width, seen_.height};
   const double beside = kBeside_px + beside_px;
   const auto pixel = [](double place, int limit) { return static_cast<int>(std::clamp(place, 0.0, static_cast<double>(limit))); };
-  const PixelWindow window{pixel(std::ceil(at->image.lower.x - beside - seen_.sample.x), seen_.width),
-                           pixel(std::ceil(at->image.lower.y - beside - seen_.sample.y), seen_.height),
-                           pixel(std::floor(at->image.upper.x + beside - seen_.sample.x) + 1.0, seen_.width),
-                           pixel(std::floor(at->image.upper.y + beside - seen_.sample.y) + 1.0, seen_.height)};
+  const PixelWindow window{pixel(std::ceil(at->pixels.lower.x - beside - seen_.sample.x), seen_.width),
+                           pixel(std::ceil(at->pixels.lower.y - beside - seen_.sample.y), seen_.height),
+                           pixel(std::floor(at->pixels.upper.x + beside - seen_.sample.x) + 1.0, seen_.width),
+                           pixel(std::floor(at->pixels.upper.y + beside - seen_.sample.y) + 1.0, seen_.height)};
   if (window.empty()) return {};
   const double nearest = at->nearest - kRounding * (std::abs(at->nearest) + box.radius());
   for (int v = window.y0 / kBlock_px; v <= (window.y1 - 1) / kBlock_px; ++v)

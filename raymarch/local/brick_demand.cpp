@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raymarch/scene/rays_of_box.h"
 #include "sdf/number.h"
 
 namespace limn {
@@ -10,17 +11,6 @@ namespace {
 
 /// How far what lies beside the picture may reach into it, px.
 constexpr double kAside_px = 4.0;
-/// From the points of a box towards the eye.
-std::array<Interval, 3> towards_eye(const Camera& camera, const Box& box) {
-  std::array<Interval, 3> way;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double back = camera.world_from_camera[2][axis];
-    way[static_cast<size_t>(axis)] = camera.projection == Projection::orthographic
-                                         ? Interval{back, back}
-                                         : outward(camera.eye[axis] - box.upper[axis], camera.eye[axis] - box.lower[axis]);
-  }
-  return way;
-}
 
 /// The surface at a place near a brick's middle: what N.V is there, and how it changes along the surface.
 struct SecondOrder {
@@ -188,7 +178,7 @@ double pixels_per_unit_of(const Camera& camera, const Box& box) {
 }
 
 bool may_hold_border(const GradientBounds& bounds, const Box& box, const Camera& camera, const std::vector<double>& thresholds) {
-  const std::array<Interval, 3> way = towards_eye(camera, box);
+  const std::array<Interval, 3> from_eye = ways_to(ray_source(camera), box), way{-from_eye[0], -from_eye[1], -from_eye[2]};
   const auto& g = bounds.gradient;
   const Interval facing = g[0] * way[0] + g[1] * way[1] + g[2] * way[2];
   if (facing.contains(0.0)) return true;

@@ -56,7 +56,7 @@ class Division {
   }
 
   bool may_be_met(FieldEvaluator& evaluator, const Box& box) const {
-    constexpr double kInside = 0.05;
+    constexpr double kInside = 0.05;  // rays end at the surface, but for rounding
     const double lipschitz = evaluator.field().traits().lipschitz, reach = farthest(box);
     const Interval value = evaluator.bounds(box);
     if (value.lower > lipschitz * reach || value.upper < -kInside * lipschitz * reach) return false;

@@ -1,7 +1,8 @@
 #pragma once
 // Internal: rays through the shell between a surface and its offset, several at a time.
 
-#include <cstdint>
+#include <array>
+#include <cstddef>
 
 #include "raymarch/surface.h"
 #include "sdf/lane_points.h"

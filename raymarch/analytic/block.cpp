@@ -1,5 +1,6 @@
 #include "raymarch/analytic/block.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "sdf/simd.h"
@@ -82,9 +83,9 @@ HWY_INLINE Reals mapped(const TapeLeaf& leaf, int row, const LaneArray* p, int a
 }
 
 unsigned balls(const FieldTape& tape, std::span<const std::uint32_t> leaves, const LaneRays& rays, const LaneArray& from,
-               const LaneArray& end, BallHits& hits, unsigned& inside) {
+               const LaneArray& end, BallHits& hits, unsigned& unsure) {
   unsigned found = 0;
-  inside = 0;
+  unsure = 0;
   for (int at = 0; at < kLanes; at += kWidth) {
     const Reals begin = load(from, at), zero = reals(0.0);
     Reals nearest = load(end, at), normal[3] = {zero, zero, zero};
@@ -123,9 +124,11 @@ unsigned balls(const FieldTape& tape, std::span<const std::uint32_t> leaves, con
     }
     const Reals per_length = reals(1.0) / norm(normal[0], normal[1], normal[2]);
     for (int axis = 0; axis < 3; ++axis) store(normal[axis] * per_length, hits.normal[axis], at);
+    const Reals place = as_float(nearest), next = nearly_as_near(place, nearest);
+    const unsigned tied = hit & bits_of(either(place<next, place> next));
     store(nearest, hits.t, at);
     found |= hit << at;
-    inside |= within << at;
+    unsure |= (within | tied) << at;
   }
   return found;
 }
@@ -176,30 +179,66 @@ unsigned write_balls(const RayBatch& rays, int first, const BallHits& found, uns
   return written;
 }
 
-/// A step from `place`, where f and its gradient were taken, rounded to float. Where rays graze, a step from so near may still lead away.
-HWY_INLINE Reals stepped(const LaneRays& packet, Reals place, Reals value, const std::array<LaneArray, 3>& gradients, int at) {
+/// Newton's step from `place`, where f and its gradient were taken.
+HWY_INLINE Reals newton_from(const LaneRays& packet, Reals place, Reals value, const std::array<LaneArray, 3>& gradients, int at) {
   Reals slope = reals(0.0);
   for (size_t axis = 0; axis < 3; ++axis) slope = slope + load(gradients[axis], at) * load(packet.direction[axis], at);
-  const Reals newton = as_float(place - value / slope);
-  const LaneMask near = abs(newton - place) <= abs(place) * (2.0 * std::numeric_limits<float>::epsilon());
-  return select(near, newton, place);
+  return place - value / slope;
+}
+
+/// A step to `to`, rounded to float. Where rays graze, a step from so near may still lead away.
+HWY_INLINE Reals stepped(Reals place, Reals to) {
+  const Reals rounded = as_float(to);
+  const LaneMask near = abs(rounded - place) <= abs(place) * (2.0 * std::numeric_limits<float>::epsilon());
+  return select(near, rounded, place);
+}
+
+/// Between two floats that are equally near but for rounding, each may hold itself for the nearest: there the sign of f halfway decides.
+/// True where a lane has moved.
+bool settle_ties(const MarchTape& march, const LaneRays& packet, const LaneArray& sign, unsigned lanes, TapeScratch& scratch,
+                 const LaneArray& values, const std::array<LaneArray, 3>& gradients, LaneArray& place) {
+  LaneArray other, halfway;
+  unsigned ties = 0;
+  for (int at = 0; at < kLanes; at += kWidth) {
+    const Reals here = load(place, at);
+    const Reals next = stepped(here, nearly_as_near(here, newton_from(packet, here, load(values, at), gradients, at)));
+    ties |= bits_of(either(here<next, here> next)) << at;
+    store(next, other, at);
+    store((here + next) * 0.5, halfway, at);
+  }
+  ties &= lanes;
+  if (ties == 0) return false;
+  LaneArray between;
+  tape_values(*march.tape, march.steps, packet, halfway, scratch, between);
+  bool moved = false;
+  for (int i = 0; i < kLanes; ++i) {
+    if (!(ties >> i & 1u)) continue;
+    const bool beyond = sign[i] * between[i] > 0.0;
+    const double nearest = beyond ? std::max(place[i], other[i]) : std::min(place[i], other[i]);
+    moved = moved || nearest != place[i];
+    place[i] = nearest;
+  }
+  return moved;
 }
 
 /// Moves roots to the floats that are nearest, as f sees it from there, so that how they were found makes no difference; takes gradients.
-void settle_places(const MarchTape& march, const LaneRays& packet, unsigned lanes, TapeScratch& scratch, LaneArray& place,
-                   std::array<LaneArray, 3>& gradients) {
+void settle_places(const MarchTape& march, const LaneRays& packet, const LaneArray& sign, unsigned lanes, TapeScratch& scratch,
+                   LaneArray& place, std::array<LaneArray, 3>& gradients) {
   constexpr int kMaxMoves = 2;
   LaneArray values;
   for (int move = 0;; ++move) {
     tape_gradients(*march.tape, march.steps, packet, place, scratch, values, gradients);
-    if (move == kMaxMoves) return;
+    if (move == kMaxMoves) break;
     unsigned moved = 0;
     for (int at = 0; at < kLanes; at += kWidth) {
-      const Reals here = load(place, at), there = stepped(packet, here, load(values, at), gradients, at);
+      const Reals here = load(place, at), there = stepped(here, newton_from(packet, here, load(values, at), gradients, at));
       moved |= bits_of(either(here<there, here> there)) << at;
       store(there, place, at);
     }
-    if ((moved & lanes) == 0) return;
+    if ((moved & lanes) == 0) break;
+  }
+  if (settle_ties(march, packet, sign, lanes, scratch, values, gradients, place)) {
+    tape_gradients(*march.tape, march.steps, packet, place, scratch, values, gradients);
   }
 }
 
@@ -208,7 +247,7 @@ unsigned write(const MarchTape& march, const RayBatch& rays, const LaneRays& pac
   LaneArray place;
   for (int at = 0; at < kLanes; at += kWidth) store(as_float(load(t, at)), place, at);
   std::array<LaneArray, 3> gradients;
-  settle_places(march, packet, lanes, scratch, place, gradients);
+  settle_places(march, packet, sign, lanes, scratch, place, gradients);
   unsigned written = 0;
   for (int at = 0; at < kLanes; at += kWidth) {
     const Reals hit = load(place, at);
@@ -254,8 +293,8 @@ unsigned newton_roots(const MarchTape& march, const LaneRays& rays, const LaneAr
   return HWY_DYNAMIC_DISPATCH(newton)(march, rays, a, b, sign, tolerance, lanes, scratch, t, undecided);
 }
 unsigned ball_roots(const FieldTape& tape, std::span<const std::uint32_t> leaves, const LaneRays& rays, const LaneArray& begin,
-                    const LaneArray& end, BallHits& hits, unsigned& inside) {
-  return HWY_DYNAMIC_DISPATCH(balls)(tape, leaves, rays, begin, end, hits, inside);
+                    const LaneArray& end, BallHits& hits, unsigned& unsure) {
+  return HWY_DYNAMIC_DISPATCH(balls)(tape, leaves, rays, begin, end, hits, unsure);
 }
 unsigned write_ball_hits(const RayBatch& rays, int first, const BallHits& found, unsigned lanes, HitBatch& hits) {
   return HWY_DYNAMIC_DISPATCH(write_balls)(rays, first, found, lanes, hits);

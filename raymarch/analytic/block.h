@@ -30,9 +30,10 @@ struct BallHits {
   LaneArray t;
   LaneArray normal[3];  ///< Unit.
 };
-/// Returns the lanes with a hit in [begin, end]; `inside` those that are within one at `begin`.
+/// Returns the lanes with a hit in [begin, end]; `unsure` those that are within one at `begin`, or whose hit is as near to one float as to
+/// the next: these are for write_roots, where f decides.
 unsigned ball_roots(const FieldTape& tape, std::span<const std::uint32_t> leaves, const LaneRays& rays, const LaneArray& begin,
-                    const LaneArray& end, BallHits& hits, unsigned& inside);
+                    const LaneArray& end, BallHits& hits, unsigned& unsure);
 
 /// Writes what `lanes` of a block hit before their ends; returns which did.
 unsigned write_ball_hits(const RayBatch& rays, int first, const BallHits& found, unsigned lanes, HitBatch& hits);

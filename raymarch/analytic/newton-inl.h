@@ -25,6 +25,12 @@ HWY_INLINE Reals dot(const LaneArray* a, const glm::dvec3& b, int at) {
   return load(a[0], at) * b.x + load(a[1], at) * b.y + load(a[2], at) * b.z;
 }
 
+/// The float that may be as near to `root` as `place`, the nearest one, is: another where rounding may have decided between the two.
+HWY_INLINE Reals nearly_as_near(Reals place, Reals root) {
+  constexpr double kTie = 1.0 / 8192.0;  // Share of half the distance of two floats; rounding moves roots by a millionth of it.
+  return as_float(place + (root - place) * (1.0 + kTie));
+}
+
 /// What the Newton iteration knows of its lanes.
 struct NewtonState {
   LaneArray low, high;  ///< f > 0 at low.

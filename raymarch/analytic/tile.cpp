@@ -18,15 +18,15 @@ void trace_balls(TileWork& work, const SlabRun& run, std::span<const TapeStep> s
     if (active == 0) continue;
     const RayBlock& rays = work.block[static_cast<size_t>(block)];
     LaneArray a, b;
-    unsigned late = 0, inside = 0;
+    unsigned late = 0, unsure = 0;
     const unsigned lanes = stretches_between(rays, run.z0, run.z1, run.sign_from, a, b, late) & active;
     if (lanes == 0) continue;
     BallHits found;
-    const unsigned hit = ball_roots(*work.view.tape, balls, rays.rays, a, b, found, inside) & lanes;
+    const unsigned hit = ball_roots(*work.view.tape, balls, rays.rays, a, b, found, unsure) & lanes;
     // From within a ball the way out is that of all that it overlaps.
-    enqueue(work, block, lanes & inside, a, b, ~0u, 0.0);
-    active &= ~(lanes & inside);
-    const unsigned entered = hit & ~inside;
+    enqueue(work, block, lanes & unsure, a, b, ~0u, 0.0);
+    active &= ~(lanes & unsure);
+    const unsigned entered = hit & ~unsure;
     if (entered != 0) write_ball_hits(work.rays, block * kLanes, found, entered, work.hits);
     active &= ~entered;
   }

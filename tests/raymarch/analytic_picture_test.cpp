@@ -35,6 +35,18 @@ struct Differences {
   double worst_off = 0.0;       ///< Of hits from the surface, shares of the scale.
 };
 
+/// By how much the floats of a world position may have been rounded. What rays are off is a share of where they are in render space, which
+/// has its origin at the scene's centre; positions are the world's, and the scene may lie far from its origin.
+double rounding_of(const glm::vec3& position) {
+  double squared = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float a = std::abs(position[axis]);
+    const double half = 0.5 * (static_cast<double>(std::nextafter(a, std::numeric_limits<float>::infinity())) - static_cast<double>(a));
+    squared += half * half;
+  }
+  return std::sqrt(squared);
+}
+
 /// One pixel of a picture of a field with finite bounds. Rays are float: what they are off is a share of where they are.
 void compare_pixel(FieldEvaluator& field, const Camera& camera, const GBuffer& seen, int x, int y, Differences& all) {
   const Box& box = field.field().traits().bounds;
@@ -59,7 +71,7 @@ void compare_pixel(FieldEvaluator& field, const Camera& camera, const GBuffer& s
   const double apart = std::abs(t - truth);
   if (apart > 1e-4 * scale) return wrong(std::max(from, std::min(t, truth) - 1e-5 * scale), std::min(t, truth) + 1e-5 * scale);
   const double off = std::abs(field.value(ray.origin + t * ray.direction)) / field.field().traits().lipschitz;
-  all.worst_off = std::max(all.worst_off, off / scale);
+  all.worst_off = std::max(all.worst_off, (off - rounding_of(seen.position.at(x, y))) / scale);
 }
 
 void compare(const Field& field, const Camera& camera, const GBuffer& seen, Differences& all) {

@@ -71,7 +71,9 @@ glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& from, const glm::dvec3&
     const glm::dvec3 k = glm::normalize(glm::cross(from, any));
     return 2.0 * glm::dot(k, v) * k - v;
   }
-  return v * cosine + glm::cross(axis, v) + axis * (glm::dot(axis, v) / (1.0 + cosine));
+  // 1 + cosine, with its digits where they are nearly opposite.
+  const glm::dvec3 sum = from + to;
+  return v * cosine + glm::cross(axis, v) + axis * (glm::dot(axis, v) / (0.5 * glm::dot(sum, sum)));
 }
 
 /// What is unit but for rounding is taken as it is: so a camera that was written down can be read again to the last bit.
@@ -176,7 +178,8 @@ glm::dvec3 default_view_direction(const glm::dvec3& up) { return glm::normalize(
 
 ViewAngles angles_of(const glm::dvec3& direction, const glm::dvec3& up) {
   const glm::dvec3 d = turned(glm::normalize(direction), glm::normalize(up), {0, 1, 0});
-  return {std::atan2(d.x, d.z), std::asin(std::clamp(d.y, -1.0, 1.0))};
+  // Not by the arc sine, which towards straight up and down loses half its digits.
+  return {std::atan2(d.x, d.z), std::atan2(d.y, std::hypot(d.x, d.z))};
 }
 
 glm::dvec3 direction_at(const ViewAngles& angles, const glm::dvec3& up) {

@@ -17,10 +17,14 @@ struct InkFrame {
   const Image<std::int32_t>& before;
 };
 
+/// Of one frame: 1 where there is ink, and where ink has flipped and the reference has not since.
+struct FlipMasks {
+  Image<std::uint8_t> ink{}, reference{}, owes{};
+};
+
 /// What counting goes by from frame to frame. Empty before the first.
 struct FlipHistory {
-  Image<std::uint8_t> ink{}, reference{};
-  Image<std::uint8_t> owes{};  ///< 1 where ink has flipped and the reference has not since.
+  FlipMasks last{}, before{};  ///< Of the last frame and the one before it, whose memory the next frame takes.
 };
 
 /// Counted over pixels whose piece of surface was seen the frame before.

@@ -12,12 +12,15 @@ namespace limn {
 /// Where the coverage is at least one half.
 inline bool is_ink(float coverage) { return coverage >= 0.5f; }
 
+/// 1 where there is ink, in a part of the pixels.
+inline void mark_ink(const Image<float>& coverage, const IndexRange<size_t>& part, Image<std::uint8_t>& mask) {
+  for (size_t i = part.first; i < part.last; ++i) mask.pixels[i] = is_ink(coverage.pixels[i]);
+}
+
 /// 1 where there is ink.
 inline Image<std::uint8_t> ink_mask(const Image<float>& coverage) {
   auto mask = Image<std::uint8_t>::unset(coverage.width, coverage.height);
-  parallel_parts(coverage.size(), size_t{1} << 15, [&](const IndexRange<size_t>& part) {
-    for (size_t i = part.first; i < part.last; ++i) mask.pixels[i] = is_ink(coverage.pixels[i]);
-  });
+  parallel_parts(coverage.size(), size_t{1} << 15, [&](const IndexRange<size_t>& part) { mark_ink(coverage, part, mask); });
   return mask;
 }
 

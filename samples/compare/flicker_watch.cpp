@@ -91,7 +91,6 @@ FlickerWatch watch_flicker(const ExperimentSpec& spec, const FramePath& path, co
 
 void watch_frame(const Picture& picture, const FrameHistory& history, const Camera& camera, const ExecutionSettings& how,
                  FlickerWatch& watch) {
-  const Image<std::uint8_t> before = watch.flips.ink;
   const InkFrame own{picture.border, history.pixels_before};
   FlickerWatch::Frame frame;
   std::optional<Picture> reference;
@@ -101,7 +100,7 @@ void watch_frame(const Picture& picture, const FrameHistory& history, const Came
     frame.counts = count_flips(own, given, watch.flips);
     const bool handed_over = !picture.gbuffer.n_dot_v.pixels.empty();
     const GBuffer& seen = handed_over ? picture.gbuffer : history.samples.front().gbuffer;
-    frame.places = flip_places(seen.n_dot_v, history.pixels_before, before, watch.flips.ink);
+    frame.places = flip_places(seen.n_dot_v, history.pixels_before, watch.flips.before.ink, watch.flips.last.ink);
   });
   watch.frames.push_back(frame);
 }

@@ -19,7 +19,7 @@ Camera random_camera(Random& random, const Box& box) {
   const int most = random.index(4) == 0 ? 90 : 24;
   settings.width_px = 1 + random.index(most);
   settings.height_px = 1 + random.index(most);
-  const double radius = box.finite() ? box.radius() : 2.0;
+  const double radius = box.finite() && box.radius() > 0.0 ? box.radius() : 2.0;  // bounds may be a single point
   const glm::dvec3 center = box.finite() ? box.center() : glm::dvec3(0.0);
   const double away = random.index(3) == 0 ? random.uniform(0.0, 1.0) : std::exp2(random.uniform(0.0, 5.0));
   settings.eye = center + away * radius * random.direction();

@@ -96,7 +96,7 @@ TEST(BrickTree, OfRootsAtOneDepthTheFirstBricksCountsWhicheverIsLookedAtFirst) {
   std::mt19937 random(random_seed());
   std::uniform_real_distribution<double> part(0.0, 1.0);
   int ties = 0;
-  for (int draw = 0; draw < 60; ++draw) {
+  for (int draw = 0; draw < 600; ++draw) {
     // Far from the origin boxes and their slack are rounded most.
     BentPlane plane{8 * std::uniform_int_distribution<int>(10, 150)(random), 0.0, 3.9 + 0.05 * part(random), 0.001 + 0.003 * part(random)};
     const bool upper_first = draw % 2 == 0;
@@ -116,7 +116,7 @@ TEST(BrickTree, OfRootsAtOneDepthTheFirstBricksCountsWhicheverIsLookedAtFirst) {
           << "draw " << draw << ", ray " << i << ": t " << together[i].t << ", alone " << of_first[i].t << " and " << of_second[i].t;
     }
   }
-  EXPECT_GT(ties, 20);
+  EXPECT_GT(ties, 20);  // One draw in eleven has a hundred.
 }
 
 }  // namespace

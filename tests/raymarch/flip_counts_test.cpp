@@ -83,7 +83,7 @@ TEST(FlipCounts, ByRunsAreThoseOfOnePixelAfterTheOther) {
       EXPECT_EQ(counted.flips, plain.counts.flips - before_frame.flips) << round << " frame " << frame;
       EXPECT_EQ(counted.reference_flips, plain.counts.reference_flips - before_frame.reference_flips) << round << " frame " << frame;
       EXPECT_EQ(counted.beyond, plain.counts.beyond - before_frame.beyond) << round << " frame " << frame;
-      EXPECT_TRUE(std::equal(plain.owes.begin(), plain.owes.end(), history.owes.pixels.begin())) << round << " frame " << frame;
+      EXPECT_TRUE(std::equal(plain.owes.begin(), plain.owes.end(), history.last.owes.pixels.begin())) << round << " frame " << frame;
     }
     all.flips += plain.counts.flips, all.beyond += plain.counts.beyond;
   }

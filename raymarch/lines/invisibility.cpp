@@ -11,20 +11,18 @@
 #include "raymarch/lines/curve_events.h"
 #include "raymarch/lines/curve_walk.h"
 #include "raymarch/lines/missed_changes.h"
+#include "raymarch/lines/piece_rays.h"
 #include "sdf/parallel.h"
 
 namespace limn {
 namespace {
 
-constexpr double kShort_px = 1.0;  // pieces shorter than this are not asked by rays of their own
-constexpr double kClear_px = 0.3, kLeastClear_px = 0.12;
-constexpr double kExactShare = 0.01;   // of these beside straight edges, whose rays start on them
+constexpr double kShort_px = 1.0;      // pieces shorter than this are not asked by rays of their own
 constexpr double kBesideNearer = 0.3;  // of the way to a nearer line that runs along: so far off the curve rays start
 constexpr double kWorthAsking_px = 3.0;
 constexpr size_t kAskedOf = 6;  // pieces in a row: no more steps than that go by without a ray that confirms them
 constexpr int kMostSearches = 4;
-constexpr double kTouch_px = 0.01;   // two polylines, each known to half of this: so near their lines may cross where they do not
-constexpr double kNearEnd_px = 0.3;  // pieces in which no ray starts farther from their ends tell little
+constexpr double kTouch_px = 0.01;  // two polylines, each known to half of this: so near their lines may cross where they do not
 
 /// One curve being cut.
 class Cutter {
@@ -37,8 +35,7 @@ class Cutter {
         folds_(folds),
         layers_before_(layers_before),
         walk_(walk),
-        clear_px_(kClear_px * (curve.straight ? kExactShare : 1.0)),
-        least_clear_px_(kLeastClear_px * (curve.straight ? kExactShare : 1.0)) {}
+        starts_(curve, number, walk, camera, folds, cut_.events) {}
 
   CutCurve run(std::vector<CurveEvent> events) {
     cut_.events = std::move(events);
@@ -79,77 +76,6 @@ class Cutter {
     cut_.pieces.push_back({number_, begin, end, from, to, walk_.length_to(to) - walk_.length_to(from), 0, true});
   }
 
-  /// The sample of a piece nearest to the share of its length, or a point on a chord where it holds none.
-  double ray_at(const CurvePiece& piece, double share) const {
-    const double begin = walk_.length_to(piece.from), wanted = begin + share * piece.length_px,
-                 room = std::min(kNearEnd_px, 0.2 * piece.length_px);
-    double from = std::floor(piece.from) + (curve_.straight ? 0.5 : 1.0);
-    if (from <= piece.from) from += 1.0;
-    const auto place_of = [&](std::ptrdiff_t k) { return from + static_cast<double>(k); };
-    const auto length_at = [&](std::ptrdiff_t k) { return walk_.length_to(place_of(k)); };
-    // Lengths rise along the piece: the first sample of those from `low` to `high` for which something holds from there on.
-    const auto first_with = [](std::ptrdiff_t low, std::ptrdiff_t high, const auto& holds) {
-      while (low < high) {
-        const std::ptrdiff_t middle = low + (high - low) / 2;
-        if (holds(middle))
-          high = middle;
-        else
-          low = middle + 1;
-      }
-      return low;
-    };
-    const auto count = static_cast<std::ptrdiff_t>(std::max(0.0, std::ceil(piece.to - from)));
-    const std::ptrdiff_t first = first_with(0, count, [&](std::ptrdiff_t k) { return length_at(k) - begin >= room; }),
-                         end = first_with(first, count, [&](std::ptrdiff_t k) { return begin + piece.length_px - length_at(k) < room; });
-    if (first == end) return glm::mix(piece.from, piece.to, share);
-    const std::ptrdiff_t after = first_with(first, end, [&](std::ptrdiff_t k) { return length_at(k) >= wanted; });
-    if (after == first) return place_of(first);
-    const double before = length_at(after - 1);
-    if (after < end && length_at(after) - wanted < wanted - before) return place_of(after);
-    // The first of those as far along.
-    return place_of(first_with(first, after, [&](std::ptrdiff_t k) { return length_at(k) >= before; }));
-  }
-  /// The place at that share, or nothing where rays from so near to a piercing say nothing.
-  std::optional<double> telling_ray_at(const CurvePiece& piece, double share) const {
-    if (const auto clear = clear_ray_at(piece, share)) return clear;
-    const double place = ray_at(piece, share), here = walk_.length_to(place);
-    const bool tells =
-        here >= walk_.length_to(piece.from) + unclear_at(piece.begin) && here <= walk_.length_to(piece.to) - unclear_at(piece.end);
-    return tells ? std::optional<double>(place) : std::nullopt;
-  }
-  /// A piece between two crossings of one nearer line, which runs so close beside it that no ray starts clear of it, and so far from it
-  /// that the curves themselves tell that they cross twice: rays that pass so near to an edge know less.
-  bool told_by_lines(const CurvePiece& piece) const {
-    if (piece.begin < 0 || piece.end < 0) return false;
-    const CurveEvent &begin = cut_.events[static_cast<size_t>(piece.begin)], &end = cut_.events[static_cast<size_t>(piece.end)];
-    if (begin.kind != VertexKind::crossing || end.kind != VertexKind::crossing || begin.nearer != end.nearer) return false;
-    double most = 0.0;
-    for (const double share : {0.5, 0.38, 0.62, 0.26, 0.74}) {
-      if (clear_ray_at(piece, share)) return false;
-      const double place = ray_at(piece, share);
-      const CurveSample sample = sample_at(curve_, place, camera_);
-      const auto nearer = folds_.nearest(sample, number_, place, clear_px_);
-      if (!nearer || nearer->curve != begin.nearer) return false;
-      most = std::max(most, folds_.clearance_px(sample, number_, place, clear_px_));
-    }
-    return most > 2.0 * curve_.apart_px;
-  }
-  double unclear_at(int event) const { return event < 0 ? 0.0 : cut_.events[static_cast<size_t>(event)].unclear_px; }
-  /// Near that share a place where no nearer line runs so close by that a ray from beside the curve may pass it on its wrong side. Nothing
-  /// where one does all along.
-  std::optional<double> clear_ray_at(const CurvePiece& piece, double share) const {
-    double best = 0.0, most = least_clear_px_;
-    const double begin = walk_.length_to(piece.from) + unclear_at(piece.begin), end = walk_.length_to(piece.to) - unclear_at(piece.end);
-    for (const double off : {0.0, 0.12, -0.12, 0.24, -0.24, 0.36, -0.36, 0.45, -0.45}) {
-      if (!(share + off > 0.0 && share + off < 1.0)) continue;
-      const double place = ray_at(piece, share + off);
-      if (const double here = walk_.length_to(place); here < begin || here > end) continue;
-      const double clear = folds_.clearance_px(sample_at(curve_, place, camera_), number_, place, clear_px_, most);
-      if (clear >= clear_px_) return place;
-      if (clear > most) best = place, most = clear;
-    }
-    return most > least_clear_px_ ? std::optional<double>(best) : std::nullopt;
-  }
   LayersSeen look(double place, double lift_share = 1.0) {
     ++rays;
     CurveSample sample = sample_at(curve_, place, camera_);
@@ -230,8 +156,8 @@ class Cutter {
       const CurvePiece& piece = cut_.pieces[arc[k]];
       if (piece.length_px < kNearEnd_px) continue;
       for (const double share : {0.15, 0.5, 0.85}) {
-        const bool clear_only = piece.length_px < least_unclear_px || told_by_lines(piece);
-        const std::optional<double> ray = clear_only ? clear_ray_at(piece, share) : telling_ray_at(piece, share);
+        const bool clear_only = piece.length_px < least_unclear_px || starts_.told_by_lines(piece);
+        const std::optional<double> ray = clear_only ? starts_.clear_ray_at(piece, share) : starts_.telling_ray_at(piece, share);
         if (!ray) continue;
         const double place = begins[k] + (*ray - piece.from);
         if (probes.empty() || place > probes.back().at) probes.push_back({place, unexplained(place)});
@@ -272,12 +198,12 @@ class Cutter {
   /// that start nearer to the curve have to say so, too.
   bool is_hidden(const CurvePiece& piece) {
     for (const double share : {0.5, 0.3, 0.7}) {
-      const std::optional<double> clear = clear_ray_at(piece, share);
-      const double place = clear.value_or(ray_at(piece, share));
+      const std::optional<double> clear = starts_.clear_ray_at(piece, share);
+      const double place = clear.value_or(starts_.ray_at(piece, share));
       if (cast(place) == 0) return false;
       if (clear) continue;
-      const double room_px = folds_.clearance_px(sample_at(curve_, place, camera_), number_, place, least_clear_px_);
-      if (look(place, kBesideNearer * room_px / least_clear_px_).count == 0) return false;
+      const double room_px = folds_.clearance_px(sample_at(curve_, place, camera_), number_, place, starts_.least_clear_px);
+      if (look(place, kBesideNearer * room_px / starts_.least_clear_px).count == 0) return false;
     }
     return true;
   }
@@ -298,9 +224,10 @@ class Cutter {
     }
     const bool same = first == second;
     const int offset =
-        cast(telling_ray_at(cut_.pieces[arc[first]], same ? 0.35 : 0.5).value_or(ray_at(cut_.pieces[arc[first]], 0.5))) - relative[first];
+        cast(starts_.telling_ray_at(cut_.pieces[arc[first]], same ? 0.35 : 0.5).value_or(starts_.ray_at(cut_.pieces[arc[first]], 0.5))) -
+        relative[first];
     const auto denies = [&](size_t k, double share) {
-      const std::optional<double> place = telling_ray_at(cut_.pieces[arc[k]], share);
+      const std::optional<double> place = starts_.telling_ray_at(cut_.pieces[arc[k]], share);
       return place && cast(*place) - relative[k] != offset;
     };
     if (denies(second, same ? 0.65 : 0.5)) return {};
@@ -323,11 +250,12 @@ class Cutter {
         if (length(k) > length(longest)) longest = k;
       }
       if (is_asked(longest) || (hidden && longest == *hidden) || length(longest) < kWorthAsking_px) continue;
-      if (const auto place = clear_ray_at(cut_.pieces[arc[longest]], 0.5); place && cast(*place) - relative[longest] != offset) return {};
+      if (const auto place = starts_.clear_ray_at(cut_.pieces[arc[longest]], 0.5); place && cast(*place) - relative[longest] != offset)
+        return {};
     }
     for (size_t k = 0; k < arc.size(); ++k) {
       if (offset + relative[k] != 0 || is_asked(k) || length(k) < kShort_px) continue;
-      if (is_hidden(cut_.pieces[arc[k]]) && !told_by_lines(cut_.pieces[arc[k]])) return {};
+      if (is_hidden(cut_.pieces[arc[k]]) && !starts_.told_by_lines(cut_.pieces[arc[k]])) return {};
     }
     return offset;
   }
@@ -338,17 +266,17 @@ class Cutter {
     if (piece.length_px < least_px) return {};
     std::map<int, int> votes;
     for (const double share : {0.5, 0.3, 0.7}) {
-      if (const auto place = clear_ray_at(piece, share)) ++votes[cast(*place)];
+      if (const auto place = starts_.clear_ray_at(piece, share)) ++votes[cast(*place)];
     }
-    if (votes.empty() && piece.length_px >= kWorthAsking_px && !told_by_lines(piece)) {
+    if (votes.empty() && piece.length_px >= kWorthAsking_px && !starts_.told_by_lines(piece)) {
       // Nearer lines run along it: rays from points on the curve itself, if they agree.
       for (const double share : {0.5, 0.3, 0.7}) {
-        if (const auto place = telling_ray_at(piece, share)) ++votes[cast(*place)];
+        if (const auto place = starts_.telling_ray_at(piece, share)) ++votes[cast(*place)];
       }
       if (votes.size() > 1 && least_px > 0.0) return {};
     }
     if (votes.empty() && least_px > 0.0) return {};
-    if (votes.empty()) ++votes[cast(ray_at(piece, 0.5))];
+    if (votes.empty()) ++votes[cast(starts_.ray_at(piece, 0.5))];
     return std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; })->first;
   }
 
@@ -406,8 +334,8 @@ class Cutter {
   const NearerFolds& folds_;
   const LayersBefore& layers_before_;
   const CurveWalk& walk_;
-  double clear_px_, least_clear_px_;
   CutCurve cut_;
+  PieceRays starts_;
   std::vector<CurveEvent> missed_{};  ///< Found by the last search.
   bool may_search_ = true;
 };

@@ -2,9 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
-#include <functional>
-#include <tuple>
+#include <limits>
+#include <utility>
 
 #include "raymarch/border.h"
 #include "raymarch/look.h"
@@ -20,13 +19,17 @@ namespace limn {
 namespace {
 
 constexpr const char* kBorder = "Border";
-constexpr const char* kSweep = "Sweep (a list: 2,4,6; a range: 2..6)";
-constexpr const char* kStudy = "Study";
-constexpr const char* kStability = "Cases";
-constexpr const char* kHidden = "";  ///< In no help.
-constexpr const char* kPlan = "Plan";
 constexpr const char* kExecution = "Execution (never changes a pixel)";
 constexpr const char* kLimits = "Limits (estimates are within a factor of two; predicted overruns exit with 2, actual ones with 1)";
+
+void read_compared_surfaces(const std::string& text, Options& options) {
+  for (const std::string& name : parse_names(text)) {
+    find_surface(name, "", "--surfaces");
+    add_unless_there(name, options.spec.surfaces);
+  }
+}
+
+}  // namespace
 
 CLI::Option* add_repeatable(CLI::App& app, const OptionText& text, std::function<void(const std::string&)> read) {
   const auto each = [read = std::move(read)](const std::vector<std::string>& values) {
@@ -48,13 +51,6 @@ void read_compared_methods(const std::string& text, Options& options) {
   }
 }
 
-void read_compared_surfaces(const std::string& text, Options& options) {
-  for (const std::string& name : parse_names(text)) {
-    find_surface(name, "", "--surfaces");
-    add_unless_there(name, options.spec.surfaces);
-  }
-}
-
 void add_compared_surfaces(CLI::App& app, Options& options) {
   const auto surface = [&options](const std::string& text) {
     find_surface(text, "", "--surface");
@@ -64,8 +60,6 @@ void add_compared_surfaces(CLI::App& app, Options& options) {
   add_repeatable(app, {"--surfaces", "A,B,...", "several of them (limn list surfaces)", kSurface},
                  [&options](const std::string& text) { read_compared_surfaces(text, options); });
 }
-
-}  // namespace
 
 CLI::Option* add(CLI::App& app, const OptionText& text, const std::function<void(const std::string&)>& read) {
   CLI::Option* option = app.add_option_function<std::string>(text.flags, read, text.help);
@@ -171,86 +165,6 @@ void add_dump(CLI::App& app, Options& options) {
 void add_demo(CLI::App& app, Options& options) {
   add(app, {"--size", "WxH", "every picture in pixels, 1..16384 each; smaller ones are there sooner; default: as the page says", kCamera},
       [&options](const std::string& text) { options.spec.camera.size_px = parse_size("--size", text); });
-}
-
-namespace {
-
-/// From where the camera looks, and how the picture is framed.
-void add_view_angles(CLI::App& app, CameraSpec& camera) {
-  auto* eye = app.get_option("--eye");
-  const auto number = [&app](const char* flag, const char* value, const char* help, std::optional<double>& target) {
-    return add(app, {flag, value, help, kCamera}, [&target, flag](const std::string& text) { target = parse_number(flag, text); });
-  };
-  number("--azimuth", "DEG", "looks from so far round --up: 0 from the front (+z; where z is up -y), 90 from the right; default 38.7",
-         camera.azimuth_deg)
-      ->excludes(eye);
-  add(app, {"--elevation", "DEG", "looks from so far above the horizon, -90 to 90; default 25.1", kCamera},
-      [&camera](const std::string& text) {
-        camera.elevation_deg = parse_number("--elevation", text);
-        if (std::abs(*camera.elevation_deg) > 90.0) throw InputError({"", "--elevation", text, "out of range", "-90 to 90 degrees"});
-      })
-      ->excludes(eye);
-  number("--roll", "DEG", "the picture turns clockwise; default 0", camera.roll_deg);
-  number("--zoom", "FACTOR", "the picture enlarged about its middle, above 0; default 1", camera.zoom);
-  number("--margin", "SHARE", "of the picture left free on each side of what is framed, 0 to below 0.5; default 0.07", camera.margin)
-      ->excludes(eye);
-}
-
-}  // namespace
-
-void add_camera(CLI::App& app, Options& options, bool with_views, const std::string& default_size) {
-  const std::string size_help = "picture in pixels, 1..16384 each; default " + default_size;
-  add(app, {"--size", "WxH", size_help.c_str(), kCamera},
-      [&options](const std::string& text) { options.spec.camera.size_px = parse_size("--size", text); });
-  add(app, {"--eye", "X,Y,Z", "where the camera stands, world units; default: framed", kCamera},
-      [&options](const std::string& text) { options.spec.camera.eye = parse_vector3("--eye", text); });
-  add(app, {"--target", "X,Y,Z", "what it looks at, world units; default: the middle of what is drawn", kCamera},
-      [&options](const std::string& text) { options.spec.camera.target = parse_vector3("--target", text); });
-  add(app, {"--up", "X,Y,Z", "what is up in the picture: a direction, or an axis such as z or -y; default y", kCamera},
-      [&options](const std::string& text) { options.spec.camera.up = parse_direction("--up", text); });
-  auto* fov = add(app, {"--fov", "DEG", "vertical field of view, degrees, above 0 and below 180; default 35", kCamera},
-                  [&options](const std::string& text) { options.spec.camera.fov_deg = parse_number("--fov", text); });
-  auto* ortho = add(app, {"--ortho", "HEIGHT", "orthographic, the picture's height in world units; default: perspective", kCamera},
-                    [&options](const std::string& text) { options.spec.camera.ortho_height = parse_number("--ortho", text); });
-  fov->excludes(ortho);
-  add_view_angles(app, options.spec.camera);
-  if (!with_views) return;
-  add(app, {"--views", "N", "N pictures from directions spread evenly on the sphere, 1..10000; default 1: the camera's own", kCamera},
-      [&options](const std::string& text) { options.spec.views = parse_integer("--views", text, 1, 10'000); });
-}
-
-void add_turntable(CLI::App& app, Options& options) {
-  add(app, {"--turntable", "N", "N pictures, 2..10000, while the camera goes once round about --up; they share one size", kCamera},
-      [&options](const std::string& text) { options.turntable = parse_integer("--turntable", text, 2, 10'000); })
-      ->excludes(app.get_option("--views"))
-      ->excludes(app.get_option("--frames"));
-  auto* turntable = app.get_option("--turntable");
-  app.add_flag("--animate", options.animate, "one picture that plays all frames instead of a file a frame: .png; an .apng always does")
-      ->group(kCamera)
-      ->needs(turntable);
-  add(app, {"--fps", "N", "frames a second of such a picture, above 0 up to 100; default 24", kCamera},
-      [&options](const std::string& text) {
-        options.lines.frames_per_second = parse_number_above("--fps", text, 0.0, false, "above 0 and up to 100 frames a second");
-        if (options.lines.frames_per_second > 100.0)
-          throw InputError({"", "--fps", text, "out of range", "above 0 and up to 100 frames a second"});
-      })
-      ->needs(turntable);
-}
-
-void add_frames(CLI::App& app, Options& options, const char* help) {
-  auto* frames = add(app, {"--frames", "N", help, kCamera},
-                     [&options](const std::string& text) { options.frames.frames = parse_integer("--frames", text, 1, 10'000); });
-  frames->excludes(app.get_option("--views"));
-  add(app, {"--path-step", "PX", "how far the picture moves from frame to frame, pixels, above 0 up to 1; default 0.1", kCamera},
-      [&options](const std::string& text) {
-        const char* const right = "above 0 and up to 1 pixel";
-        options.frames.step_px = parse_number_above("--path-step", text, 0.0, false, right);
-        if (options.frames.step_px > 1.0) throw InputError({"", "--path-step", text, "out of range", right});
-      })
-      ->needs(frames);
-  add(app, {"--seed", "N", "random seed of the camera path, 0..2147483647; default 1", kCamera}, [&options](const std::string& text) {
-    options.frames.seed = static_cast<std::uint64_t>(parse_integer("--seed", text, 0, std::numeric_limits<int>::max()));
-  })->needs(frames);
 }
 
 void add_grid(CLI::App& app, Options& options) {
@@ -375,125 +289,6 @@ void add_limits(CLI::App& app, Options& options) {
        "time the call may take, such as 90s or 10m: refused where twice that is expected, stopped where it is over; default: no limit",
        kLimits},
       [&options](const std::string& text) { options.spec.limits.max_time_ms = parse_milliseconds("--max-time", text); });
-}
-
-void add_parts(CLI::App& app, Options& options) {
-  app.add_option("DIR", options.study.parts, "folders that hold parts of one study: a part itself, or a folder of parts")
-      ->type_name("")
-      ->required();
-}
-
-void add_study(CLI::App& app, Options& options) {
-  SweepSpec& sweep = options.sweep;
-  StudyRunOptions& run = options.study;
-  const auto level = [](const std::string& text) { return parse_integer("--levels", text, 0, 8); };
-  add(app, {"--levels", "LIST", "refinements of a cage or a tessellation, 0..8; default 0..5, fewer where they would be large", kSweep},
-      [&sweep, level](const std::string& text) { sweep.levels = parse_integers(text, level, [](int value) { return value + 1; }); });
-  const auto voxels = [](const std::string& text) { return parse_integer("--voxels", text, 4, 8192); };
-  add(app, {"--voxels", "LIST", "voxels along the longest side, 4..8192; a range doubles; default 16..256", kSweep},
-      [&sweep, voxels](const std::string& text) { sweep.voxels = parse_integers(text, voxels, [](int value) { return 2 * value; }); });
-  add(app, {"--normals", "LIST", "normals of meshes (limn list normals); default flat,vertex,limit, as far as there are any", kSweep},
-      [&sweep](const std::string& text) {
-        for (const std::string& name : parse_names(text)) add_unless_there(parse_normals(name, "", "--normals"), sweep.normals);
-      });
-  add(app, {"--gradients", "LIST", "gradients of level sets (limn list gradients); default all that the band is wide enough for", kSweep},
-      [&sweep](const std::string& text) {
-        for (const std::string& name : parse_names(text)) {
-          find_gradient(name, "", "--gradients");
-          add_unless_there(name, sweep.gradients);
-        }
-      });
-  add(app, {"--methods", "A,B,...|all", "outline methods (limn list methods); default rim", kSweep},
-      [&options](const std::string& text) { read_compared_methods(text, options); });
-  add(app, {"--thresholds", "LIST", "of the rim, and of every other method that has a threshold; default the method's own", kSweep},
-      [&sweep](const std::string& text) { sweep.thresholds = parse_thresholds("--thresholds", text); });
-  add(app, {"--local", "LIST", "tolerances of local models for the study's views together, px, such as 1,0.5,0.25; default none", kSweep},
-      [&sweep](const std::string& text) { sweep.local_px = parse_tolerances("--local", text); });
-  add(app, {"--views", "N", "directions spread evenly on the sphere, 1..10000; 1: the camera's own; default 4", kSweep},
-      [&sweep](const std::string& text) { sweep.views = parse_integer("--views", text, 1, 10'000); });
-  add_repeatable(app, {"--set", "KEY=VALUE", "a parameter of the methods; METHOD.KEY=VALUE for one of several; repeatable", kSweep},
-                 [&options](const std::string& text) { options.spec.border.parameters.push_back(parse_key_value("--set", text)); });
-  add_switch(app,
-             {"--flicker", "", "measure flicker too, under four moves of the camera by less than a pixel: five times the tracing", kStudy},
-             sweep.flicker);
-  add(app, {"--shard", "I/N", "do only part I of N, into OUT/part-I-of-N; limn merge joins the parts", kStudy},
-      [&run](const std::string& text) { std::tie(run.shard, run.shards) = parse_shard("--shard", text); });
-  add_switch(app, {"--fresh", "", "start over: what an earlier study left in the folder goes; default: go on where it stopped", kStudy},
-             run.fresh);
-  add_cases(app, options, kHidden);
-}
-
-void add_cases(CLI::App& app, Options& options, const char* group) {
-  StabilityOptions& stability = options.stability;
-  add_repeatable(app, {"--case", "NAME|FILE", "only this case, or one more from a file (.toml); repeatable", group},
-                 [&stability](const std::string& text) { stability.cases.push_back(text); });
-  add(app, {"--seed", "N", "where the cases' random parameters start; default 1", group}, [&stability](const std::string& text) {
-    stability.seed = static_cast<std::uint64_t>(parse_integer("--seed", text, 0, 2'000'000'000));
-  });
-  add(app, {"--draws", "N", "draws of each case's random parameters, 1..10000; default: the case's own", group},
-      [&stability](const std::string& text) { stability.draws = parse_integer("--draws", text, 1, 10'000); });
-}
-
-void add_stability(CLI::App& app, Options& options) {
-  add_cases(app, options, kStability);
-  add_repeatable(
-      app,
-      {"--method,--methods", "A,B,...", "only cells of these outline methods (limn list methods), repeatable; default: all", kStability},
-      [&options](const std::string& text) { read_compared_methods(text, options); });
-  add_compared_surfaces(app, options);
-}
-
-namespace {
-
-CLI::Option* add_metric(CLI::App& app, Options& options) {
-  return add(app,
-             {"--metric", "border|silhouette",
-              "what has to be right: border (the rim's ink, inside and outside) or silhouette; default border", kPlan},
-             [&options](const std::string& text) {
-               options.plan.silhouette = parse_plan_metric("--metric", text);
-               options.metric_given = true;
-             });
-}
-
-}  // namespace
-
-void add_local(CLI::App& app, Options& options, bool metric) {
-  CLI::Option* local =
-      app.add_option_function<std::vector<std::string>>(
-             "--local",
-             [&options](const std::vector<std::string>& texts) {
-               options.local.asked = true;
-               if (!texts.empty() && !texts.back().empty())
-                 options.local.tolerance_px = parse_number_above("--local", texts.back(), 0.0, false, "a number of pixels above 0");
-             },
-             "a mesh or level set that is fine where the border of these pictures runs and coarse elsewhere: the border within PX pixels")
-          ->type_name("PX")
-          ->group(kSurface)
-          ->expected(0, 1);
-  if (metric) add_metric(app, options)->needs(local);
-}
-
-void add_plan(CLI::App& app, Options& options) {
-  PlanSpec& plan = options.plan;
-  auto* tolerance =
-      add(app,
-          {"--tolerance", "PX",
-           "how far the border may lie from the true one, pixels, above 0: 95 % of it lies within; picks the cheapest model", kPlan},
-          [&plan](const std::string& text) {
-            plan.tolerance_px = parse_number_above("--tolerance", text, 0.0, false, "a number of pixels above 0");
-          });
-  CLI::Option* metric = add_metric(app, options);
-  // `limn render --local PX` reads it, too.
-  if (!app.get_option_no_throw("--local")) metric->needs(tolerance);
-  add_repeatable(
-      app, {"--budget", "SIZE|TIME", "what the model may take: memory such as 64M, or time to build and trace such as 200ms or 2s", kPlan},
-      [&plan](const std::string& text) {
-        if (text.empty() || text.back() != 's')
-          plan.budget_bytes = parse_bytes("--budget", text, kLeastBudget);
-        else
-          plan.budget_ms = parse_milliseconds("--budget", text);
-      })
-      ->needs(tolerance);
 }
 
 }  // namespace limn

@@ -27,6 +27,8 @@ struct OptionText {
 
 /// One argument, handed to `read` as text, so that every complaint is ours: one line that says what is expected.
 CLI::Option* add(CLI::App& app, const OptionText& text, const std::function<void(const std::string&)>& read);
+/// The same, as often as somebody likes.
+CLI::Option* add_repeatable(CLI::App& app, const OptionText& text, std::function<void(const std::string&)> read);
 /// An option without an argument.
 void add_switch(CLI::App& app, const OptionText& text, bool& target);
 /// A setting of surfaces by its name ("voxels").
@@ -39,6 +41,11 @@ void add_unless_there(const T& one, std::vector<T>& all) {
 
 /// Of add_border() what says which ink: --method and --set; `compared`: --methods too.
 void add_methods(CLI::App& app, Options& options, bool compared = false);
+
+/// Adds the methods of a list, or of "all", to those that are compared. Throws InputError for a name that is none.
+void read_compared_methods(const std::string& text, Options& options);
+/// --surface, repeatable, and --surfaces.
+void add_compared_surfaces(CLI::App& app, Options& options);
 
 /// --case, --seed and --draws, in this group of the help.
 void add_cases(CLI::App& app, Options& options, const char* group);

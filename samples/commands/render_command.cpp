@@ -1,22 +1,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <deque>
 #include <future>
-#include <memory>
-#include <numbers>
 
-#include "raymarch/files/animated_png.h"
 #include "raymarch/files/picture_module.h"
-#include "raymarch/image_output.h"
 #include "raymarch/look.h"
 #include "raymarch/mesh/polygons.h"
 #include "raymarch/surface/view_level.h"
 #include "samples/commands/command.h"
 #include "samples/commands/common.h"
 #include "samples/commands/render_outputs.h"
-#include "samples/compare/flicker_watch.h"
+#include "samples/commands/render_writer.h"
 #include "samples/experiment/camera_json.h"
 #include "samples/experiment/empty_picture.h"
 #include "samples/experiment/flat_input.h"
@@ -25,39 +19,13 @@
 #include "samples/experiment/thread_settings.h"
 #include "samples/input/input_files.h"
 #include "samples/input/scene_facts.h"
-#include "samples/output/interrupt.h"
-#include "samples/output/output.h"
 #include "samples/plan/plan_job.h"
 #include "sdf/error.h"
-#include "sdf/output_file.h"
-#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Timings {
-  double load_ms = 0.0, build_ms = 0.0, trace_ms = 0.0, border_ms = 0.0, write_ms = 0.0;
-};
-
-double since_ms(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
-Json surface_json(const SurfaceInfo& info) {
-  return {{"kind", info.kind},   {"voxels", info.voxels},     {"voxel_size", info.voxel_size}, {"triangles", info.triangles},
-          {"bytes", info.bytes}, {"build_ms", info.build_ms}, {"warnings", info.warnings}};
-}
-
-std::string summary(const SurfaceInfo& info, const Camera& camera, const HitCounts& counts, const Timings& timings) {
-  std::string text = fmt::format("{}x{}, {}, {} hits, {} misses", camera.width_px, camera.height_px, info.kind, counts.hits, counts.misses);
-  if (counts.out_of_steps > 0) text += fmt::format(", {} out of steps", counts.out_of_steps);
-  text += fmt::format("; load {}, build {}, trace {}, border {}, write {}", time_text(timings.load_ms), time_text(timings.build_ms),
-                      time_text(timings.trace_ms), time_text(timings.border_ms), time_text(timings.write_ms));
-  if (info.bytes > 0) text += "; " + bytes_text(static_cast<double>(info.bytes));
-  return text + "\n";
-}
 
 void add_options(CLI::App& app, Options& options) {
   add_input(app, options);
@@ -74,26 +42,6 @@ void add_options(CLI::App& app, Options& options) {
   add_json(app, options);
   add_execution(app, options);
 }
-
-// What all views of one call share, and what they add up to.
-struct Render {
-  SceneInput input;
-  std::vector<fs::path> outputs;
-  SurfaceSettings surface;
-  PictureSettings picture;
-  Camera camera;  ///< Of the last view.
-  Timings timings;
-  HitCounts counts;
-  std::vector<std::string> warnings, notes;
-  int empty_pictures = 0;
-  Json files = Json::array(), cameras = Json::array();
-  glm::vec3 ground{1.0f};                        ///< Behind pictures without alpha of their own.
-  std::vector<std::vector<std::byte>> frames{};  ///< PNG files, where one picture plays them.
-  Json plan{};                                   ///< What --tolerance chose; null without it.
-  std::optional<FlickerWatch> flicker{};         ///< Of several frames.
-  ObjectMeshCache meshes{};                      ///< Of the plan, if there was one.
-  std::optional<LocalSettings> local{};          ///< Of a local model.
-};
 
 /// What has no meaning without something else in the call.
 void refuse_alone(const Options& options) {
@@ -112,108 +60,6 @@ void prepare_local(const Options& options, Render& render) {
   refuse_local_without_effect(options.spec, render.input.scene, render.surface, {render.surface.kind});
 }
 
-ResolvedModel resolved_model(const Render& render) {
-  return {render.input.scene, render.surface, {render.surface.kind}, render.local ? render.local->tolerance_px : 0.0};
-}
-
-bool in_bytes(const Render& render) { return render.picture.colors == PictureColors::bytes; }
-
-bool plays(const Render& render, const Options& options) {
-  return std::any_of(render.outputs.begin(), render.outputs.end(), [&](const fs::path& file) { return is_animated(file, options); });
-}
-
-/// All frames as one picture.
-void write_animation(const Options& options, Render& render) {
-  if (!plays(render, options)) return;
-  const auto start = std::chrono::steady_clock::now();
-  const std::vector<std::byte> bytes = animated_png(render.frames, options.lines.frames_per_second);
-  for (const fs::path& file : render.outputs) {
-    if (!is_animated(file, options)) continue;
-    write_whole(file, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
-    render.files.push_back(file.string());
-  }
-  render.timings.write_ms += since_ms(start);
-}
-
-Image<glm::vec4> over_ground(const Image<glm::vec4>& picture, const glm::vec3& ground) {
-  auto over = Image<glm::vec4>::unset(picture.width, picture.height);
-  parallel_parts(picture.size(), size_t{1} << 14, [&](const IndexRange<size_t>& part) {
-    for (size_t i = part.first; i < part.last; ++i) {
-      const glm::vec4& pixel = picture.pixels[i];
-      over.pixels[i] = pixel + (1.0f - pixel.a) * glm::vec4(ground, 1.0f);
-    }
-  });
-  return over;
-}
-
-/// Writes it; the time that took, ms. Of `render` only the frames of an animation change.
-double write_picture(const Picture& picture, const Camera& camera, int index, const Options& options, Render& render) {
-  const auto start = std::chrono::steady_clock::now();
-  const std::string call = resolved_call("render", options.spec, resolved_model(render), camera, render.picture);
-  // Layers keep their alpha; a picture to be looked at has a ground.
-  const bool grounded = !options.transparent && !options.ink_only && !render.picture.background;
-  const Image<glm::vec4> over = grounded ? over_ground(picture.composite, render.ground) : Image<glm::vec4>();
-  std::vector<OutputFile> files;
-  for (const fs::path& name : render.outputs) {
-    if (is_animated(name, options)) continue;
-    const fs::path file = picture_file(name, index, options);
-    OutputFile output = ending_of(file) == ".exr" ? exr_output(picture, camera, call, file)
-                        : in_bytes(render)        ? image_output(picture.bytes, file)
-                                                  : image_output(grounded ? over : picture.composite, file);
-    files.push_back({file, [write = std::move(output.write)](const fs::path& temporary) {
-                       if (interrupted()) throw Cancelled{};
-                       write(temporary);
-                     }});
-  }
-  if (plays(render, options))
-    render.frames.push_back(in_bytes(render) ? encode_png(picture.bytes) : encode_png(grounded ? over : picture.composite));
-  // A layer file and the picture beside it show the same, or are both those of an earlier call.
-  write_together(files);
-  return since_ms(start);
-}
-
-/// Pictures are written while the next one is traced, if there is a second thread.
-class Writer {
- public:
-  Writer(const Options& options, Render& render) : options_(options), render_(render) {}
-  ~Writer() {
-    for (const std::future<double>& one : under_way_) one.wait();
-  }
-  Writer(const Writer&) = delete;
-  Writer& operator=(const Writer&) = delete;
-
-  void write(Picture picture, int index) {
-    // Of bytes, which are small, a second one: tracing and writing take about as long, and neither should wait for the other's longest.
-    // Films keep their frames in order.
-    wait_for(in_bytes(render_) && !plays(render_, options_) ? 1 : 0);
-    for (const fs::path& name : render_.outputs)
-      if (!is_animated(name, options_)) render_.files.push_back(picture_file(name, index, options_).string());
-    if (pictures_of(options_) == 1) {
-      render_.timings.write_ms += write_picture(picture, render_.camera, index, options_, render_);
-      return;
-    }
-    under_way_.push_back(run_beside([this, kept = std::make_shared<const Picture>(std::move(picture)), camera = render_.camera, index] {
-      return write_picture(*kept, camera, index, options_, render_);
-    }));
-  }
-  /// Throws what writing threw.
-  void finish() { wait_for(0); }
-
- private:
-  /// Until so many are under way, the oldest first.
-  void wait_for(size_t most) {
-    while (under_way_.size() > most) {
-      std::future<double> oldest = std::move(under_way_.front());
-      under_way_.pop_front();
-      render_.timings.write_ms += oldest.get();
-    }
-  }
-
-  const Options& options_;
-  Render& render_;
-  std::deque<std::future<double>> under_way_{};
-};
-
 // Of many pictures the first few stand for the rest.
 void warn_of_empty(const std::vector<std::string>& reasons, int index, const Options& options, Render& render) {
   constexpr int kMost = 5;
@@ -228,7 +74,7 @@ void warn_of_empty(const std::vector<std::string>& reasons, int index, const Opt
   render.warnings.insert(render.warnings.end(), warnings.begin(), warnings.end());
 }
 
-void draw_one(const SceneModel& model, int index, const Options& options, ProgressBar& bar, FrameHistory& history, Writer& writer,
+void draw_one(const SceneModel& model, int index, const Options& options, ProgressBar& bar, FrameHistory& history, PictureWriter& writer,
               Render& render) {
   ExecutionSettings how = execution_settings(options.spec.threads);
   const int pictures = pictures_of(options);
@@ -244,75 +90,6 @@ void draw_one(const SceneModel& model, int index, const Options& options, Progre
   render.notes.insert(render.notes.end(), picture.notes.begin(), picture.notes.end());
   warn_of_empty(why_empty(render.input.scene, model, render.camera, seen), index, options, render);
   writer.write(std::move(picture), index);
-}
-
-// All frames have one size: the first camera frames the object as it goes round.
-std::vector<Camera> turntable_cameras(const CameraSettings& settings, const FramedSurface& framed, const FramingSettings& framing,
-                                      int count) {
-  const glm::dvec3 center = settings.target ? *settings.target : framed.bounds.finite() ? framed.bounds.center() : glm::dvec3(0.0);
-  const Camera first = camera_of_view(settings, turned_surface(framed, center, settings.up, count), framing, 0, 1);
-  std::vector<Camera> cameras;
-  cameras.reserve(static_cast<size_t>(count));
-  for (int i = 0; i < count; ++i) cameras.push_back(turned_camera(first, center, settings.up, 2.0 * std::numbers::pi * i / count));
-  return cameras;
-}
-
-std::vector<Camera> cameras_of(const Options& options, const SceneInput& input) {
-  const CameraSettings settings = camera_settings(options.spec.camera, input);
-  const FramedSurface framed = framed_input(options.spec.camera, input);
-  const FramingSettings framing = framing_settings(options.spec.camera);
-  if (options.frames.frames > 1) return path_cameras(camera_of_view(settings, framed, framing, 0, 1), framed.bounds, options.frames);
-  if (options.turntable > 0) return turntable_cameras(settings, framed, framing, options.turntable);
-  std::vector<Camera> cameras;
-  cameras.reserve(static_cast<size_t>(options.spec.views));
-  for (int view = 0; view < options.spec.views; ++view)
-    cameras.push_back(camera_of_view(settings, framed, framing, view, options.spec.views));
-  return cameras;
-}
-
-/// By which rules cages were subdivided: nobody need have said.
-std::vector<std::string> scheme_lines(const Scene& scene, const SurfaceSettings& settings) {
-  std::vector<std::string> lines;
-  for (const SceneObject& object : scene.objects) {
-    const auto scheme = cage_scheme(object, settings);
-    if (scheme)
-      lines.push_back(
-          fmt::format("'{}' is subdivided by {}, level {}", object.name, name_of(*scheme), object.level.value_or(settings.level)));
-  }
-  return lines;
-}
-
-void report(const Options& options, const Render& render, const SurfaceInfo& info) {
-  const Timings& timings = render.timings;
-  if (!options.quiet) {
-    for (const std::string& note : render.notes) print_note(note);
-  }
-  if (options.verbose) {
-    for (const std::string& line : scheme_lines(render.input.scene, render.surface)) print_note(line);
-    print_note(resolved_call("render", options.spec, resolved_model(render), render.camera, render.picture));
-  }
-  if (options.json) {
-    print_json({{"hits", render.counts.hits},
-                {"misses", render.counts.misses},
-                {"out_of_steps", render.counts.out_of_steps},
-                {"timings_ms",
-                 {{"load", timings.load_ms},
-                  {"build", timings.build_ms},
-                  {"trace", timings.trace_ms},
-                  {"border", timings.border_ms},
-                  {"write", timings.write_ms}}},
-                {"surface", surface_json(info)},
-                {"cameras", render.cameras},
-                {"files", render.files},
-                {"warnings", render.warnings},
-                {"notes", render.notes},
-                {"plan", render.plan},
-                {"flicker", render.flicker ? flicker_json(*render.flicker) : Json()}});
-  } else if (!options.quiet) {
-    std::string text;
-    for (const Json& file : render.files) text += file.get<std::string>() + "\n";
-    print_text(text + summary(info, render.camera, render.counts, timings));
-  }
 }
 
 // With --tolerance the plan says how to model; nothing is drawn where nothing meets it.
@@ -361,6 +138,82 @@ PictureSettings planned_picture(const Render& render) {
   return planned;
 }
 
+bool has_layers(const fs::path& file) { return ending_of(file) == ".exr"; }
+bool is_png(const fs::path& file) { return ending_of(file) == ".png" || ending_of(file) == ".apng"; }
+/// Written by the module for all other kinds of pictures.
+bool by_module(const fs::path& file) { return !is_png(file) && !has_layers(file); }
+
+/// What the pictures hold: no more than the files and the methods read.
+void choose_picture(const Options& options, Render& render) {
+  render.picture = picture_settings(options.spec.border, render.input);
+  if (options.spec.border.look) render.ground = looks().find(*options.spec.border.look).ground;
+  const bool layered = std::any_of(render.outputs.begin(), render.outputs.end(), has_layers);
+  render.picture.mattes = layered;
+  if (!layered && !options.transparent && !options.ink_only && !render.picture.background) render.picture.background = render.ground;
+  constexpr GBufferLayers none{false, false, false, false, false, false, false, false};
+  if (!layered) render.picture.layers = none;
+  if (std::all_of(render.outputs.begin(), render.outputs.end(), is_png)) render.picture.colors = PictureColors::bytes;
+  render.picture.hands_over_gbuffer = layered;
+}
+
+/// Throws InputError where the call needs more than it may have. A local level set says so itself: what it takes is not known before.
+void check_render_cost(const Options& options, const Render& render, const Camera& camera) {
+  if (render.local && has_local_bricks(render.surface.kind)) return;
+  const bool layered = render.picture.hands_over_gbuffer;
+  PictureLoad load = picture_load(camera, planned_picture(render), {pictures_of(options), layered, options.frames.frames > 1});
+  if (std::any_of(render.outputs.begin(), render.outputs.end(), by_module)) load.library_bytes = kPictureLibraryBytes;
+  check_cost(options, render.input.scene, render.surface, load);
+}
+
+SceneModel build(const Options& options, const std::vector<Camera>& cameras, Render& render) {
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<std::string> levels;
+  if (options.spec.surface.level_for_view && !options.plan.tolerance_px)
+    levels = refine_for_views(render.surface, cameras, render.input.scene);
+  SceneModel model = render.local ? build_local_model(render.input.scene, render.surface, *render.local, &render.meshes)
+                                  : build_model(render.input.scene, render.surface, &render.meshes);
+  render.timings.build_ms = elapsed_ms(start);
+  const SurfaceInfo info = total(model);
+  print_warnings(options, info.warnings);
+  render.warnings.insert(render.warnings.end(), info.warnings.begin(), info.warnings.end());
+  render.notes.insert(render.notes.end(), levels.begin(), levels.end());
+  render.notes.insert(render.notes.end(), info.notes.begin(), info.notes.end());
+  return model;
+}
+
+void draw_all(const SceneModel& model, const std::vector<Camera>& cameras, const Options& options, ProgressBar& bar, Render& render) {
+  if (options.frames.frames > 1) render.flicker = watch_flicker(options.spec, options.frames, render.input, render.surface);
+  const glm::dvec3 up = camera_settings(options.spec.camera, render.input).up;
+  const Box box = bounds(render.input.scene);
+  FrameHistory history;
+  PictureWriter writer(options, render);
+  for (int k = 0; k < pictures_of(options); ++k) {
+    render.camera = cameras[static_cast<size_t>(k)];
+    render.cameras.push_back(camera_json(render.camera, up, box));
+    draw_one(model, k, options, bar, history, writer, render);
+  }
+  writer.finish();
+  write_animation(options, render);
+}
+
+/// Input, outputs and surface. False where a plan finds no model that meets the tolerance; that is told then.
+bool prepare(const Options& options, ProgressBar& bar, Render& render) {
+  render.input = load(options);
+  render.outputs = outputs_of(options, render.input);
+  check_outputs(render.outputs, files_of(render.input), options);
+  render.timings.load_ms = render.input.load_ms;
+  render.surface = surface_settings(options.spec, render.input);
+  refuse_eye_of_views(options.spec.camera, options.spec.views);
+  prepare_local(options, render);
+  if (!options.plan.tolerance_px) {
+    refuse_without_effect(options.spec.surface, render.input, {.kinds = {render.surface.kind}});
+    return true;
+  }
+  if (choose_model(options, bar, render)) return true;
+  if (options.json) print_json({{"files", Json::array()}, {"warnings", render.warnings}, {"plan", render.plan}});
+  return false;
+}
+
 int run(const Options& given) {
   Options options = with_defaults(given);
   const ThreadLimit threads(options.spec.threads);
@@ -371,82 +224,29 @@ int run(const Options& given) {
   if (!options.outputs.empty()) check_outputs(options.outputs, {options.spec.input}, options);
 
   Render render;
-  render.input = load(options);
-  render.outputs = outputs_of(options, render.input);
-  check_outputs(render.outputs, files_of(render.input), options);
-  render.timings.load_ms = render.input.load_ms;
-  render.surface = surface_settings(options.spec, render.input);
-  refuse_eye_of_views(options.spec.camera, options.spec.views);
-  prepare_local(options, render);
-  if (!options.plan.tolerance_px) refuse_without_effect(options.spec.surface, render.input, {.kinds = {render.surface.kind}});
-  if (options.plan.tolerance_px && !choose_model(options, bar, render)) {
-    if (options.json) print_json({{"files", Json::array()}, {"warnings", render.warnings}, {"plan", render.plan}});
-    return 1;
-  }
+  if (!prepare(options, bar, render)) return 1;
   choose_method(render, options);
   render.surface.progress = bar.stage("building the surface");
-  render.picture = picture_settings(options.spec.border, render.input);
-  if (options.spec.border.look) render.ground = looks().find(*options.spec.border.look).ground;
-  const auto has_layers = [](const fs::path& file) { return ending_of(file) == ".exr"; };
-  const bool layered = std::any_of(render.outputs.begin(), render.outputs.end(), has_layers);
-  render.picture.mattes = layered;
-  if (!layered && !options.transparent && !options.ink_only && !render.picture.background) render.picture.background = render.ground;
-  constexpr GBufferLayers none{false, false, false, false, false, false, false, false};
-  if (!layered) render.picture.layers = none;
-  const auto is_png = [](const fs::path& file) { return ending_of(file) == ".png" || ending_of(file) == ".apng"; };
-  const bool all_png = std::all_of(render.outputs.begin(), render.outputs.end(), is_png);
-  if (all_png) render.picture.colors = PictureColors::bytes;
-  render.picture.hands_over_gbuffer = layered;
+  choose_picture(options, render);
   // Made first: a camera that is wrong is told before the surface is built.
-  const std::vector<Camera> cameras = cameras_of(options, render.input);
-
+  const std::vector<Camera> cameras = render_cameras(options, render.input);
   if (options.local.tolerance_px) {
     render.local = local_settings(*options.local.tolerance_px, options.plan.silhouette, render.picture.methods, cameras);
     render.local->steady = options.frames.frames > 1;
   }
-
-  // A local level set says itself when it needs too much: what it takes is not known before.
-  const bool is_local_volume = render.local && has_local_bricks(render.surface.kind);
-  const bool by_module =
-      std::any_of(render.outputs.begin(), render.outputs.end(), [&](const auto& file) { return !is_png(file) && !has_layers(file); });
-  if (!is_local_volume) {
-    PictureLoad load = picture_load(cameras.front(), planned_picture(render), {pictures_of(options), layered, options.frames.frames > 1});
-    if (by_module) load.library_bytes = kPictureLibraryBytes;
-    check_cost(options, render.input.scene, render.surface, load);
-  }
+  check_render_cost(options, render, cameras.front());
   render.warnings =
       warn_of_input(options, render.input.scene, render.surface, {.methods = names_of(render.picture.methods), .meshes = &render.meshes});
 
-  // While the surface is built.
-  std::future<void> pictures;
-  if (by_module && !is_held_to_one_thread()) pictures = load_picture_module_early();
-  const auto build_start = std::chrono::steady_clock::now();
-  std::vector<std::string> levels;
-  if (options.spec.surface.level_for_view && !options.plan.tolerance_px)
-    levels = refine_for_views(render.surface, cameras, render.input.scene);
-  const SceneModel model = render.local ? build_local_model(render.input.scene, render.surface, *render.local, &render.meshes)
-                                        : build_model(render.input.scene, render.surface, &render.meshes);
-  render.timings.build_ms = since_ms(build_start);
-  const SurfaceInfo info = total(model);
-  print_warnings(options, info.warnings);
-  render.warnings.insert(render.warnings.end(), info.warnings.begin(), info.warnings.end());
-  render.notes.insert(render.notes.end(), levels.begin(), levels.end());
-  render.notes.insert(render.notes.end(), info.notes.begin(), info.notes.end());
-  if (options.frames.frames > 1) render.flicker = watch_flicker(options.spec, options.frames, render.input, render.surface);
-  const glm::dvec3 up = camera_settings(options.spec.camera, render.input).up;
-  const Box box = bounds(render.input.scene);
-  FrameHistory history;
-  Writer writer(options, render);
-  for (int k = 0; k < pictures_of(options); ++k) {
-    render.camera = cameras[static_cast<size_t>(k)];
-    render.cameras.push_back(camera_json(render.camera, up, box));
-    draw_one(model, k, options, bar, history, writer, render);
-  }
-  writer.finish();
-  write_animation(options, render);
+  // While the surface is built and pictures are drawn.
+  std::future<void> module_loading;
+  if (std::any_of(render.outputs.begin(), render.outputs.end(), by_module) && !is_held_to_one_thread())
+    module_loading = load_picture_module_early();
+  const SceneModel model = build(options, cameras, render);
+  draw_all(model, cameras, options, bar, render);
   bar.clear();
   if (render.flicker && !options.quiet) print_note(flicker_sentence(*render.flicker));
-  report(options, render, info);
+  report_render(options, render, total(model));
   return 0;
 }
 

@@ -7,8 +7,7 @@
 #include <cmath>
 
 #include "raymarch/surface/object_mesh.h"
-#include "samples/plan/predict.h"
-#include "samples/plan/series_search.h"
+#include "samples/plan/plan_search.h"
 #include "sdf/error.h"
 #include "sdf/parallel.h"
 
@@ -17,30 +16,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-struct Search {
-  const std::vector<PlanView>& views;
-  const PlanSettings& settings;
-  ProgressBar& bar;
-  ExperimentRun run;
-  PlanTrial* under_way = nullptr;  ///< What the engine measures goes there.
-  PlanAnswer answer{};
-  std::vector<SeriesSearch> series_searches{};     ///< Of answer.all_series.
-  std::vector<std::vector<BorderPlace>> places{};  ///< Of each view.
-};
-
 BorderErrors worst(const BorderErrors& a, const BorderErrors& b) {
   return {std::max(a.silhouette_px, b.silhouette_px), std::max(a.inner_px, b.inner_px), std::max(a.border_px, b.border_px)};
-}
-
-PredictedErrors predicted(const Search& search, size_t series, size_t candidate) {
-  const ResolutionSeries& of = search.answer.all_series[series];
-  if (of.by_tolerance) return predict_local_errors(of, candidate);
-  PredictedErrors errors;
-  for (const std::vector<BorderPlace>& places : search.places) {
-    const PredictedErrors one = predict_errors(of, candidate, places, search.settings.threshold);
-    errors = {worst(errors.expected, one.expected), worst(errors.low, one.low), worst(errors.high, one.high)};
-  }
-  return of.local ? predict_local_errors(of, errors) : errors;
 }
 
 /// To make grids that are there ready for rays.
@@ -65,7 +42,7 @@ Experiment experiment_of(const Scene& scene, const std::vector<PlanView>& views,
   return experiment;
 }
 
-ExperimentObserver observer_of(Search& search) {
+ExperimentObserver observer_of(PlanSearch& search) {
   return {.built =
               [&](size_t, const SceneModel& model, double, const Timing&) {
                 PlanTrial& trial = *search.under_way;
@@ -94,8 +71,25 @@ double start_ms(const ObjectMeshCache& meshes) {
   return ms;
 }
 
-/// Builds and measures one candidate. A candidate that cannot be built fails with its reason.
-PlanTrial try_candidate(Search& search, size_t series, size_t candidate) {
+bool fits_budget(const PlanTrial& trial, const PlanSettings& settings) {
+  return (!settings.budget_ms || trial.time_ms() <= *settings.budget_ms) &&
+         (!settings.budget_bytes || trial.bytes <= *settings.budget_bytes);
+}
+
+}  // namespace
+
+PredictedErrors predicted(const PlanSearch& search, size_t series, size_t candidate) {
+  const ResolutionSeries& of = search.answer.all_series[series];
+  if (of.by_tolerance) return predict_local_errors(of, candidate);
+  PredictedErrors errors;
+  for (const std::vector<BorderPlace>& places : search.places) {
+    const PredictedErrors one = predict_errors(of, candidate, places, search.settings.threshold);
+    errors = {worst(errors.expected, one.expected), worst(errors.low, one.low), worst(errors.high, one.high)};
+  }
+  return of.local ? predict_local_errors(of, errors) : errors;
+}
+
+PlanTrial try_candidate(PlanSearch& search, size_t series, size_t candidate) {
   PlanTrial trial;
   trial.series = series;
   trial.candidate = candidate;
@@ -118,11 +112,6 @@ PlanTrial try_candidate(Search& search, size_t series, size_t candidate) {
   return trial;
 }
 
-bool fits_budget(const PlanTrial& trial, const PlanSettings& settings) {
-  return (!settings.budget_ms || trial.time_ms() <= *settings.budget_ms) &&
-         (!settings.budget_bytes || trial.bytes <= *settings.budget_bytes);
-}
-
 std::optional<size_t> trial_at(const PlanAnswer& answer, size_t series, size_t candidate) {
   for (size_t k = 0; k < answer.trials.size(); ++k) {
     if (answer.trials[k].series == series && answer.trials[k].candidate == candidate) return k;
@@ -130,8 +119,7 @@ std::optional<size_t> trial_at(const PlanAnswer& answer, size_t series, size_t c
   return {};
 }
 
-/// The fastest of the series' coarsest candidates that meet everything.
-std::optional<size_t> fastest(const Search& search) {
+std::optional<size_t> fastest(const PlanSearch& search) {
   std::optional<size_t> best;
   for (size_t k = 0; k < search.series_searches.size(); ++k) {
     const MeasuredCandidate* candidate = search.series_searches[k].coarsest_meeting(search.settings.tolerance_px);
@@ -144,8 +132,10 @@ std::optional<size_t> fastest(const Search& search) {
   return best;
 }
 
+namespace {
+
 /// The error that theory expects of a candidate, worst view.
-double theory_px(const Search& search, size_t series, size_t candidate) {
+double theory_px(const PlanSearch& search, size_t series, size_t candidate) {
   const ResolutionSeries& of = search.answer.all_series[series];
   if (of.by_tolerance) return predict_local_errors(of, candidate).expected.of(search.settings.metric);
   PredictedErrors errors;
@@ -154,7 +144,7 @@ double theory_px(const Search& search, size_t series, size_t candidate) {
   return (of.local ? predict_local_errors(of, errors) : errors).expected.of(search.settings.metric);
 }
 
-std::vector<SeriesSearch> series_searches_of(const Search& search) {
+std::vector<SeriesSearch> series_searches_of(const PlanSearch& search) {
   std::vector<SeriesSearch> series_searches;
   for (size_t k = 0; k < search.answer.all_series.size(); ++k) {
     SeriesSearch series_search;
@@ -169,7 +159,7 @@ std::vector<SeriesSearch> series_searches_of(const Search& search) {
   return series_searches;
 }
 
-void take(Search& search, PlanTrial trial) {
+void take(PlanSearch& search, PlanTrial trial) {
   SeriesSearch& series_search = search.series_searches[trial.series];
   const int candidate = static_cast<int>(trial.candidate);
   if (trial.failed.empty()) {
@@ -191,7 +181,7 @@ void take(Search& search, PlanTrial trial) {
 }
 
 /// The series whose next candidate is expected to cost least; those that can no longer win are closed. Empty: none is left.
-std::optional<size_t> cheapest_next(Search& search) {
+std::optional<size_t> cheapest_next(PlanSearch& search) {
   const double tolerance_px = search.settings.tolerance_px;
   const std::optional<size_t> best = fastest(search);
   std::optional<size_t> next;
@@ -220,131 +210,12 @@ std::optional<size_t> cheapest_next(Search& search) {
   return next;
 }
 
-/// The last candidate of the chosen series. Extrapolated: memory and building grow with the square of the resolution, from the two finest
-/// trials' own growth where that is steeper; tracing does not shrink.
-PlanTrial finest_of(const PlanAnswer& answer, const PlanTrial& chosen, bool& was_built) {
-  const ResolutionSeries& series = answer.all_series[chosen.series];
-  const size_t last = series.candidates.size() - 1;
-  was_built = false;
-  if (const auto trial = trial_at(answer, chosen.series, last); trial && answer.trials[*trial].failed.empty()) {
-    was_built = true;
-    return answer.trials[*trial];
-  }
-  const PlanTrial* from = &chosen;
-  for (const PlanTrial& trial : answer.trials) {
-    if (trial.series == chosen.series && trial.failed.empty() && trial.candidate > from->candidate) from = &trial;
-  }
-  PlanTrial finest = *from;
-  const double growth = std::pow(series.size_at(from->candidate) / series.size_at(last), series.growth);
-  finest.candidate = last;
-  finest.bytes = static_cast<std::int64_t>(static_cast<double>(from->bytes) * growth);
-  const double fixed_ms = std::min(series.fixed_ms, from->build_ms);
-  finest.build_ms = fixed_ms + (from->build_ms - fixed_ms) * growth;
-  finest.measured = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
-  return finest;
-}
-
-/// Whether the other series has the same kind of model, as fine everywhere.
-bool is_uniform_beside(const ResolutionSeries& other, const ResolutionSeries& local) {
-  if (other.local || other.settings.kind != local.settings.kind) return false;
-  return other.by_level || other.settings.gradient == local.settings.gradient;
-}
-
-/// The coarsest of the models that are as fine everywhere and keep to the tolerance.
-std::optional<size_t> coarsest_uniform(const Search& search, const ResolutionSeries& local) {
-  const PlanAnswer& answer = search.answer;
-  std::optional<size_t> coarsest;
-  for (size_t k = 0; k < answer.trials.size(); ++k) {
-    const PlanTrial& trial = answer.trials[k];
-    if (!is_uniform_beside(answer.all_series[trial.series], local) || !trial.failed.empty()) continue;
-    if (trial.measured.of(search.settings.metric) > search.settings.tolerance_px) continue;
-    if (!coarsest || trial.candidate < answer.trials[*coarsest].candidate) coarsest = k;
-  }
-  return coarsest;
-}
-
-/// The uniform level set of as many voxels as a local one, built and measured whatever the budget says; nothing where it is too large.
-std::optional<size_t> uniform_of_as_many_voxels(Search& search, const PlanTrial& chosen) {
-  PlanAnswer& answer = search.answer;
-  for (size_t k = 0; k < answer.all_series.size(); ++k) {
-    if (!is_uniform_beside(answer.all_series[k], answer.all_series[chosen.series])) continue;
-    std::optional<size_t> trial = trial_at(answer, k, chosen.candidate);
-    if (trial && answer.trials[*trial].failed.empty()) return trial;
-    answer.all_series[k].settings.max_bytes = search.settings.max_bytes;
-    PlanTrial beside = try_candidate(search, k, chosen.candidate);
-    if (!beside.failed.empty()) return {};
-    if (!trial) {
-      trial = answer.trials.size();
-      answer.trials.emplace_back();
-    }
-    search.series_searches[k].add(
-        {static_cast<int>(beside.candidate), beside.measured.of(search.settings.metric), beside.build_ms, beside.trace_ms});
-    answer.trials[*trial] = std::move(beside);
-    return trial;
-  }
-  return {};
-}
-
-/// What a local model saves, against those that are as fine everywhere or wherever the surface bends as much.
-void compare_local(Search& search, const PlanTrial& chosen) {
-  PlanAnswer& answer = search.answer;
-  const ResolutionSeries of = answer.all_series[chosen.series];
-  answer.uniform.reset();
-  answer.uniform_bytes = 0;
-  if (!of.local) return;
-  answer.uniform = coarsest_uniform(search, of);
-  std::optional<size_t> beside = answer.uniform;
-  if (!beside && !of.by_tolerance) {
-    beside = uniform_of_as_many_voxels(search, chosen);
-    answer.uniform = coarsest_uniform(search, of);
-  }
-  if (beside) answer.uniform_bytes = answer.trials[*beside].bytes;
-  LocalSettings everywhere = *of.local;
-  everywhere.tolerance_px = search.settings.tolerance_px;
-  everywhere.thresholds.clear();
-  everywhere.everywhere = true;
-  const SurfaceInfo info =
-      total(build_local_model(search.run.experiment().scene, of.at(chosen.candidate), everywhere, &search.answer.meshes));
-  answer.curvature_triangles = info.triangles;
-  answer.curvature_bytes = info.bytes;
-}
-
-void choose(Search& search) {
-  PlanAnswer& answer = search.answer;
-  answer.chosen = fastest(search);
-  if (!answer.chosen) {
-    for (size_t k = 0; k < answer.trials.size(); ++k) {
-      if (!answer.trials[k].failed.empty()) continue;
-      const auto error = [&](size_t t) { return answer.trials[t].measured.of(search.settings.metric); };
-      if (!answer.best || error(k) < error(*answer.best)) answer.best = k;
-    }
-    return;
-  }
-  const PlanTrial chosen = answer.trials[*answer.chosen];
-  // A file is there, and costs no more than looking at it.
-  const ResolutionSeries& tried = answer.all_series[chosen.series];
-  const size_t last = tried.candidates.size() - 1;
-  if (tried.of_file && !trial_at(answer, chosen.series, last)) answer.trials.push_back(try_candidate(search, chosen.series, last));
-  compare_local(search, chosen);
-  // What the local one was compared with may turn out to be the quicker one.
-  if (fastest(search) != answer.chosen) return choose(search);
-  if (chosen.candidate > 0) answer.coarser = trial_at(answer, chosen.series, chosen.candidate - 1);
-  answer.finest = finest_of(answer, chosen, answer.finest_was_built);
-  answer.finest.predicted = predicted(search, chosen.series, last);
-  for (size_t k = 0; k < answer.trials.size(); ++k) {
-    const PlanTrial& trial = answer.trials[k];
-    if (trial.series != chosen.series || trial.candidate >= chosen.candidate || !trial.failed.empty()) continue;
-    if (trial.measured.silhouette_px > search.settings.tolerance_px) continue;
-    if (!answer.silhouette || trial.candidate < answer.trials[*answer.silhouette].candidate) answer.silhouette = k;
-  }
-}
-
 }  // namespace
 
 PlanAnswer make_plan(const Scene& scene, const std::vector<PlanView>& views, const PlanSettings& settings, const ExecutionSettings& how,
                      ProgressBar& bar, const std::vector<PlanTrial>& known) {
   LIMN_CHECK(!views.empty());
-  Search search{views, settings, bar, ExperimentRun(experiment_of(scene, views, settings), how, observer_of(search))};
+  PlanSearch search{views, settings, bar, ExperimentRun(experiment_of(scene, views, settings), how, observer_of(search))};
   for (size_t k = 0; k < views.size(); ++k) search.run.give_truth(k, {settings.threshold, views[k].truth, {}});
   search.answer.views = views.size();
   search.answer.all_series = series_of_scene(scene, settings, &search.answer.notes);
@@ -372,7 +243,7 @@ PlanAnswer make_plan(const Scene& scene, const std::vector<PlanView>& views, con
     take(search, try_candidate(search, *series, static_cast<size_t>(candidate)));
   }
   search.answer.meshes.starts = search.run.meshes().starts;
-  choose(search);
+  choose_model(search);
   return std::move(search.answer);
 }
 

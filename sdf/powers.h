@@ -33,8 +33,8 @@ inline constexpr double kPowerSlack = 64.0 * std::numeric_limits<double>::epsilo
 /// What exponential() takes.
 inline constexpr double kLeastExponent = -708.0, kMostExponent = 709.0;
 
-/// x^power for x from 0 up; denormal x counts as 0. Off by 2 + 2 |power log x| units in the last place at most, which in sums of powers up
-/// to 1 comes to less than three.
+/// x^power for x from 0 up; denormal x counts as 0. Off by 2 + 5 |power log x| units in the last place at most, the rounding of the
+/// logarithm and of its product, which in sums of powers up to 1 comes to less than three.
 inline double power_of(double x, double power) {
   if (power == 1.0) return x;
   if (power == 0.0) return 1.0;

@@ -124,9 +124,13 @@ unsigned balls(const FieldTape& tape, std::span<const std::uint32_t> leaves, con
     }
     const Reals per_length = reals(1.0) / norm(normal[0], normal[1], normal[2]);
     for (int axis = 0; axis < 3; ++axis) store(normal[axis] * per_length, hits.normal[axis], at);
-    const Reals place = as_float(nearest), next = nearly_as_near(place, nearest);
-    const unsigned tied = hit & bits_of(either(place<next, place> next));
-    store(nearest, hits.t, at);
+    const Reals place = as_float(nearest);
+    store(place, hits.t, at);
+    unsigned tied = 0;
+    if (hit != 0) {
+      const Reals next = nearly_as_near(place, nearest);
+      tied = hit & bits_of(either(place<next, place> next));
+    }
     found |= hit << at;
     unsure |= (within | tied) << at;
   }
@@ -170,7 +174,7 @@ HWY_INLINE unsigned before_ends(Reals t, const RayBatch& rays, const int* lane, 
 unsigned write_balls(const RayBatch& rays, int first, const BallHits& found, unsigned lanes, HitBatch& hits) {
   unsigned written = 0;
   for (int at = 0; at < kLanes; at += kWidth) {
-    const Reals t = as_float(load(found.t, at));
+    const Reals t = load(found.t, at);
     const Reals normal[3] = {load(found.normal[0], at), load(found.normal[1], at), load(found.normal[2], at)};
     const unsigned bits = lanes >> at & before_ends(t, rays, nullptr, first, at);
     if (bits != 0) write_vector(t, normal, bits, nullptr, first, at, hits);
@@ -194,21 +198,20 @@ HWY_INLINE Reals stepped(Reals place, Reals to) {
 }
 
 /// Between two floats that are equally near but for rounding, each may hold itself for the nearest: there the sign of f halfway decides.
-/// True where a lane has moved.
-bool settle_ties(const MarchTape& march, const LaneRays& packet, const LaneArray& sign, unsigned lanes, TapeScratch& scratch,
-                 const LaneArray& values, const std::array<LaneArray, 3>& gradients, LaneArray& place) {
-  LaneArray other, halfway;
+/// `root`: as seen from `place`. True where a lane has moved.
+bool settle_ties(const MarchTape& march, const LaneRays& packet, const LaneArray& sign, unsigned lanes, const LaneArray& root,
+                 TapeScratch& scratch, LaneArray& place) {
+  LaneArray other;
   unsigned ties = 0;
   for (int at = 0; at < kLanes; at += kWidth) {
-    const Reals here = load(place, at);
-    const Reals next = stepped(here, nearly_as_near(here, newton_from(packet, here, load(values, at), gradients, at)));
+    const Reals here = load(place, at), next = stepped(here, nearly_as_near(here, load(root, at)));
     ties |= bits_of(either(here<next, here> next)) << at;
     store(next, other, at);
-    store((here + next) * 0.5, halfway, at);
   }
   ties &= lanes;
   if (ties == 0) return false;
-  LaneArray between;
+  LaneArray halfway, between;
+  for (int i = 0; i < kLanes; ++i) halfway[i] = 0.5 * (place[i] + other[i]);
   tape_values(*march.tape, march.steps, packet, halfway, scratch, between);
   bool moved = false;
   for (int i = 0; i < kLanes; ++i) {
@@ -225,19 +228,21 @@ bool settle_ties(const MarchTape& march, const LaneRays& packet, const LaneArray
 void settle_places(const MarchTape& march, const LaneRays& packet, const LaneArray& sign, unsigned lanes, TapeScratch& scratch,
                    LaneArray& place, std::array<LaneArray, 3>& gradients) {
   constexpr int kMaxMoves = 2;
-  LaneArray values;
+  LaneArray values, root;
   for (int move = 0;; ++move) {
     tape_gradients(*march.tape, march.steps, packet, place, scratch, values, gradients);
-    if (move == kMaxMoves) break;
     unsigned moved = 0;
     for (int at = 0; at < kLanes; at += kWidth) {
-      const Reals here = load(place, at), there = stepped(here, newton_from(packet, here, load(values, at), gradients, at));
+      const Reals here = load(place, at), newton = newton_from(packet, here, load(values, at), gradients, at);
+      store(newton, root, at);
+      if (move == kMaxMoves) continue;
+      const Reals there = stepped(here, newton);
       moved |= bits_of(either(here<there, here> there)) << at;
       store(there, place, at);
     }
     if ((moved & lanes) == 0) break;
   }
-  if (settle_ties(march, packet, sign, lanes, scratch, values, gradients, place)) {
+  if (settle_ties(march, packet, sign, lanes, root, scratch, place)) {
     tape_gradients(*march.tape, march.steps, packet, place, scratch, values, gradients);
   }
 }

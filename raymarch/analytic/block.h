@@ -27,7 +27,7 @@ unsigned newton_roots(const MarchTape& march, const LaneRays& rays, const LaneAr
 
 /// Nearest hits of balls and ellipsoids, all of which are solid; nothing else is there.
 struct BallHits {
-  LaneArray t;
+  LaneArray t;          ///< Rounded to float.
   LaneArray normal[3];  ///< Unit.
 };
 /// Returns the lanes with a hit in [begin, end]; `unsure` those that are within one at `begin`, or whose hit is as near to one float as to

@@ -27,7 +27,7 @@ HWY_INLINE Reals dot(const LaneArray* a, const glm::dvec3& b, int at) {
 
 /// The float that may be as near to `root` as `place`, the nearest one, is: another where rounding may have decided between the two.
 HWY_INLINE Reals nearly_as_near(Reals place, Reals root) {
-  constexpr double kTie = 1.0 / 8192.0;  // Share of half the distance of two floats; rounding moves roots by a millionth of it.
+  constexpr double kTie = 1.0 / 65536.0;  // Share of half the distance of two floats; rounding moves roots by a millionth of it.
   return as_float(place + (root - place) * (1.0 + kTie));
 }
 

@@ -19,9 +19,11 @@ constexpr int kValidityPieces = 256;
 constexpr double kBulge = 0.05;  // of a step's length, so that arcs are little longer than their chords
 constexpr double kLonger = 1.05;
 constexpr double kFarLonger = 1e3;
-constexpr double kUneven = 4.0;   // times as long as the other half of a step in the parameter
-constexpr int kDeepest = 48;      // halvings of a piece
-constexpr double kFinest = 1e-7;  // of the extent: no zeros are looked for between places nearer to each other
+constexpr double kUneven = 4.0;     // times as long as the other half of a step in the parameter
+constexpr int kDeepest = 48;        // halvings of a piece
+constexpr double kSettled = 1e-10;  // of the extent: so near to a surface its crossings are left as they are
+constexpr double kAside = 1e-6;     // of the extent: where slopes along a curve are taken
+constexpr double kFinest = 1e-7;    // of the extent: no zeros are looked for between places nearer to each other
 
 double box_value(const Box& box, const glm::dvec3& p) {
   const glm::dvec3 beyond = glm::max(box.lower - p, p - box.upper);
@@ -81,11 +83,25 @@ class Trimmer {
       const int count = along_line(surface, curve_.origin, curve_.x).quadratic.roots(roots);
       for (int i = 0; i < count; ++i) breaks_.push_back(roots[static_cast<size_t>(i)]);
     } else if (surface.kind != ClosedFormKind::torus && curve_.kind == FormCurve::Kind::ellipse) {
-      add_zeros(along_ellipse(surface));
+      for (const double u : zeros_of(along_ellipse(surface))) breaks_.push_back(settled(surface, u));
     } else {
       if (stations_.empty()) find_stations();
       add_breaks_along([&](const glm::dvec3& p) { return signed_value(surface, p); });
     }
+  }
+
+  /// A zero of the polynomial, moved onto the surface: on an ellipse as long as a thousand bodies its terms are so large that their sum
+  /// has lost eight digits. By secants, as long as they gain.
+  double settled(const FormSurface& surface, double u) const {
+    const auto off = [&](double at) { return signed_value(surface, point_of(curve_, at)); };
+    double here = off(u), step = kAside * body_.extent / std::max(glm::length(curve_.x), glm::length(curve_.y));
+    for (int round = 0; round < 4 && std::fabs(here) > kSettled * body_.extent; ++round) {
+      const double slope = (off(u + step) - off(u - step)) / (2.0 * step), to = u - here / slope, there = off(to);
+      if (!(std::fabs(there) < std::fabs(here))) break;
+      u = to;
+      here = there;
+    }
+    return u;
   }
 
   TrigPolynomial along_ellipse(const FormSurface& surface) const {

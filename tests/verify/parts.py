@@ -7,7 +7,7 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 TESTS = ROOT / "tests"
-NAMES = ("stability", "mutants", "kills", "determinism", "fuzz", "asan", "tsan", "scalar", "coverage", "packages", "docs")
+NAMES = ("stability", "mutants", "kills", "determinism", "seeds", "fuzz", "asan", "tsan", "scalar", "coverage", "packages", "docs")
 SUITES = ("asan", "tsan", "scalar")
 BUILDING = ("fuzz", "asan", "tsan", "scalar", "coverage", "packages")
 
@@ -22,6 +22,8 @@ def command(name, limn, out, result, quick, again):
         return [python, TESTS / "damage" / "kills.py", limn, out / "kills", "--count", "10" if quick else "100", "--json", result]
     if name == "determinism":
         return [python, TESTS / "damage" / "determinism.py", limn, out / "determinism", *([] if quick else ["--demo"]), "--json", result]
+    if name == "seeds":
+        return [python, TESTS / "seeds" / "run.py", "--seconds", "1" if quick else "6", "--json", result]
     if name == "fuzz":
         return [python, TESTS / "fuzz" / "run.py", "--seconds", "10" if quick else "60", "--json", result]
     if name == "docs":
@@ -84,7 +86,7 @@ def facts_of_checks(data):
 
 
 FACTS = {"packages": facts_of_checks, "docs": facts_of_checks, "stability": facts_of_stability, "mutants": facts_of_mutants, "kills": facts_of_kills, "determinism": facts_of_determinism,
-         "fuzz": facts_of_fuzz, "asan": facts_of_suite, "tsan": facts_of_suite, "scalar": facts_of_suite, "coverage": facts_of_coverage}
+         "seeds": facts_of_suite, "fuzz": facts_of_fuzz, "asan": facts_of_suite, "tsan": facts_of_suite, "scalar": facts_of_suite, "coverage": facts_of_coverage}
 
 
 def commit():

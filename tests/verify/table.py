@@ -6,6 +6,7 @@ TITLES = {
     "mutants": "Damaged files",
     "kills": "Kills, full disks, closed streams",
     "determinism": "Equal calls, equal bytes",
+    "seeds": "Random tests, other seeds",
     "fuzz": "Fuzzers",
     "asan": "Suite, address and undefined behaviour",
     "tsan": "Suite, threads",
@@ -39,6 +40,8 @@ def words_of(name, figures):
         return f"{f['tried']} tried, {f['tried'] - f['wrong']} survived, {f['wrong']} wrong" + (f"; skipped: {', '.join(skipped)}" if skipped else "")
     if name == "determinism":
         return f"{f['files']} files of {'the demo' if f['demo'] else 'some calls'}, {f['runs']} runs with 1 and 2 threads: {f['differing']} differ"
+    if name == "seeds":
+        return f"{f['tests']} tests, {f['runs']:,} runs from seed {f['first_seed']}: {f['failed']} failed"
     if name == "fuzz":
         return f"{f['fuzzers']} fuzzers, {f['seconds_each']} s each: {f['executions']:,} runs, {f['crashes']} crashes"
     if name == "coverage":

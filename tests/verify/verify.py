@@ -3,7 +3,7 @@
 
 verify.py [--quick] [--again] [--only PART]... [--report] [--limn PROGRAM] [--out FOLDER] [--markdown FILE]
 
-PARTs: stability, mutants, kills, determinism, fuzz, asan, tsan, scalar, coverage, packages, docs. Each writes FOLDER/<part>.json (limn-out/verify/...) with its
+PARTs: stability, mutants, kills, determinism, seeds, fuzz, asan, tsan, scalar, coverage, packages, docs. Each writes FOLDER/<part>.json (limn-out/verify/...) with its
 outcome, figures and failures, and its output to FOLDER/<part>.log. --report makes only the table, from what is there; a part that never ran is
 "not run". --again runs, of the suites under asan, tsan and scalar, only the tests that failed the last time. --quick tries fewer of everything
 and leaves out the parts that build limn anew. Ends with 1 where a part failed.

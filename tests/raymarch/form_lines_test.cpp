@@ -356,6 +356,26 @@ TEST(FormLines, SeamsLieOnBothSurfaces) {
   EXPECT_GT(points, 1000u);
 }
 
+TEST(FormLines, SeamsOfAPlaneNearlyAlongACylinderEndOnWhatCutsThem) {
+  std::mt19937 random(random_seed());
+  size_t points = 0;
+  for (int i = 0; i < 60; ++i) {
+    // The ellipse is as long as the radius over the angle.
+    const double angle = std::pow(10.0, uniform(random, -6.0, -2.0));
+    const Field pillar = make_shape("cylinder", {{"radius", {0.5}}, {"half_height", {2.0}}}),
+                across = rotate(make_shape("cylinder", {{"radius", {0.3}}, {"half_height", {2.0}}}), direction(random),
+                                uniform(random, 1.0, 2.0)),
+                side = make_shape("plane", {{"normal", {std::cos(angle), std::sin(angle), 0.0}}, {"offset", {uniform(random, -0.2, 0.3)}}});
+    const Field body = rotate(combine(Csg::difference, combine(Csg::intersection, pillar, side), across), direction(random), 1.0);
+    FieldEvaluator whole(body);
+    for (const FieldCurve& curve : seams_of_field(body)) {
+      for (const CurvePoint& point : curve.points) EXPECT_NEAR(whole.value(point.p), 0.0, 1e-8) << angle;
+      points += curve.points.size();
+    }
+  }
+  EXPECT_GT(points, 1000u);
+}
+
 TEST(FormLines, LayersAreTheSignChangesAlongRays) {
   std::mt19937 random(random_seed());
   int several = 0;

@@ -19,11 +19,11 @@ constexpr int kValidityPieces = 256;
 constexpr double kBulge = 0.05;  // of a step's length, so that arcs are little longer than their chords
 constexpr double kLonger = 1.05;
 constexpr double kFarLonger = 1e3;
-constexpr double kUneven = 4.0;     // times as long as the other half of a step in the parameter
-constexpr int kDeepest = 48;        // halvings of a piece
-constexpr double kSettled = 1e-10;  // of the extent: so near to a surface its crossings are left as they are
-constexpr double kAside = 1e-6;     // of the extent: where slopes along a curve are taken
-constexpr double kFinest = 1e-7;    // of the extent: no zeros are looked for between places nearer to each other
+constexpr double kUneven = 4.0;                   // times as long as the other half of a step in the parameter
+constexpr int kDeepest = 48;                      // halvings of a piece
+constexpr double kLong = 100.0;                   // times the extent
+constexpr int kHalvings = 8, kLongHalvings = 14;  // of a step in which zeros are looked for; where two pieces are all of a run
+constexpr double kFinest = 1e-7;                  // of the extent: no zeros are looked for between places nearer to each other
 
 double box_value(const Box& box, const glm::dvec3& p) {
   const glm::dvec3 beyond = glm::max(box.lower - p, p - box.upper);
@@ -64,6 +64,7 @@ class Trimmer {
           for (const double side : {box_.lower[axis], box_.upper[axis]})
             add_zeros({curve_.origin[axis] - side, curve_.x[axis], curve_.y[axis], 0.0, 0.0});
         }
+        if (is_long()) find_stations_within();
         return true;
       default:
         find_stations();
@@ -82,26 +83,18 @@ class Trimmer {
       std::array<double, 2> roots{};
       const int count = along_line(surface, curve_.origin, curve_.x).quadratic.roots(roots);
       for (int i = 0; i < count; ++i) breaks_.push_back(roots[static_cast<size_t>(i)]);
-    } else if (surface.kind != ClosedFormKind::torus && curve_.kind == FormCurve::Kind::ellipse) {
-      for (const double u : zeros_of(along_ellipse(surface))) breaks_.push_back(settled(surface, u));
+    } else if (surface.kind != ClosedFormKind::torus && curve_.kind == FormCurve::Kind::ellipse && !is_long()) {
+      add_zeros(along_ellipse(surface));
     } else {
-      if (stations_.empty()) find_stations();
+      if (stations_.empty() && !is_long()) find_stations();
       add_breaks_along([&](const glm::dvec3& p) { return signed_value(surface, p); });
     }
   }
 
-  /// A zero of the polynomial, moved onto the surface: on an ellipse as long as a thousand bodies its terms are so large that their sum
-  /// has lost eight digits. By secants, as long as they gain.
-  double settled(const FormSurface& surface, double u) const {
-    const auto off = [&](double at) { return signed_value(surface, point_of(curve_, at)); };
-    double here = off(u), step = kAside * body_.extent / std::max(glm::length(curve_.x), glm::length(curve_.y));
-    for (int round = 0; round < 4 && std::fabs(here) > kSettled * body_.extent; ++round) {
-      const double slope = (off(u + step) - off(u - step)) / (2.0 * step), to = u - here / slope, there = off(to);
-      if (!(std::fabs(there) < std::fabs(here))) break;
-      u = to;
-      here = there;
-    }
-    return u;
+  /// On an ellipse a hundred times as long as the body the terms of a quadratic's polynomial are so large that their sum has lost half its
+  /// digits: zeros are looked for along what of it lies in the box.
+  bool is_long() const {
+    return curve_.kind == FormCurve::Kind::ellipse && std::max(glm::length(curve_.x), glm::length(curve_.y)) > kLong * body_.extent;
   }
 
   TrigPolynomial along_ellipse(const FormSurface& surface) const {
@@ -134,6 +127,15 @@ class Trimmer {
       valid = next;
     }
     if (valid) add_run(from, end_);
+  }
+  /// The same of a long ellipse, given the breaks where it leaves the box.
+  void find_stations_within() {
+    std::sort(breaks_.begin(), breaks_.end());
+    const size_t count = breaks_.size();
+    for (size_t i = 0; i < count; ++i) {
+      const double from = breaks_[i], to = i + 1 < count ? breaks_[i + 1] : breaks_[0] + kTurn;
+      if (box_value(box_, point_of(curve_, 0.5 * (from + to))) <= 0.0) add_run(from, to);
+    }
   }
   void add_run(double from, double to) {
     run_begins_.push_back(stations_.size());
@@ -182,7 +184,7 @@ class Trimmer {
       search(value, i, fi, middle, f);
       search(value, middle, f, j, fj);
     } else if (!b.far) {
-      search_step(value, {a.s, a.p, 0.0}, fi, {b.s, b.p, 0.0}, fj, 8);
+      search_step(value, {a.s, a.p, 0.0}, fi, {b.s, b.p, 0.0}, fj, is_long() ? kLongHalvings : kHalvings);
     }
   }
   template <class Value>
@@ -190,7 +192,8 @@ class Trimmer {
     const bool differ = (fa <= 0.0) != (fb <= 0.0);
     if (!differ && (depth == 0 || std::fabs(fa) + std::fabs(fb) > kLonger * glm::distance(a.p, b.p))) return;
     if (depth == 0) {
-      breaks_.push_back(zero_between(value, a.s, fa, b.s));
+      const double zero = zero_between(value, a.s, fa, b.s);
+      breaks_.push_back(curve_.closed && zero >= end_ ? zero - kTurn : zero);
       return;
     }
     const double s = 0.5 * (a.s + b.s);

@@ -363,10 +363,12 @@ TEST(FormLines, SeamsOfAPlaneNearlyAlongACylinderEndOnWhatCutsThem) {
     // The ellipse is as long as the radius over the angle.
     const double angle = std::pow(10.0, uniform(random, -6.0, -2.0));
     const Field pillar = make_shape("cylinder", {{"radius", {0.5}}, {"half_height", {2.0}}}),
-                across = rotate(make_shape("cylinder", {{"radius", {0.3}}, {"half_height", {2.0}}}), direction(random),
-                                uniform(random, 1.0, 2.0)),
                 side = make_shape("plane", {{"normal", {std::cos(angle), std::sin(angle), 0.0}}, {"offset", {uniform(random, -0.2, 0.3)}}});
-    const Field body = rotate(combine(Csg::difference, combine(Csg::intersection, pillar, side), across), direction(random), 1.0);
+    const Field cutters[] = {make_shape("cylinder", {{"radius", {0.3}}, {"half_height", {2.0}}}),
+                             make_shape("sphere", {{"radius", {0.45}}}), make_shape("cone", {{"angle_deg", {20.0}}, {"height", {1.5}}})};
+    const Field cutter = rotate(cutters[i % 3], direction(random), uniform(random, 1.0, 2.0));
+    const Field half = combine(Csg::intersection, pillar, side);
+    const Field body = rotate(combine(Csg::difference, half, cutter), direction(random), uniform(random, 0.0, 3.0));
     FieldEvaluator whole(body);
     for (const FieldCurve& curve : seams_of_field(body)) {
       for (const CurvePoint& point : curve.points) EXPECT_NEAR(whole.value(point.p), 0.0, 1e-8) << angle;

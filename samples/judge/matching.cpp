@@ -113,8 +113,10 @@ struct Abreast {
 };
 
 /// The lines that cross the sample's normal within `reach_px` of it, running in its direction, in their order. Each counts once, however
-/// finely its points zigzag. With `overlap_px` those that end so near, or turn back, count, too.
-std::vector<Abreast> lines_abreast(const TrackSample& from, const Tracks& to, const Search& search, double reach_px, double overlap_px) {
+/// finely its points zigzag, and again where it comes back after `once_px`. With `overlap_px` those that end so near, or turn back, count,
+/// too.
+std::vector<Abreast> lines_abreast(const TrackSample& from, const Tracks& to, const Search& search, double reach_px, double overlap_px,
+                                   double once_px) {
   const glm::dvec2 normal(-from.tangent.y, from.tangent.x);
   std::vector<std::uint32_t> near;
   std::vector<Abreast> found;
@@ -138,8 +140,6 @@ std::vector<Abreast> lines_abreast(const TrackSample& from, const Tracks& to, co
   }
   std::sort(found.begin(), found.end(),
             [](const Abreast& p, const Abreast& q) { return p.track != q.track ? p.track < q.track : p.along_px < q.along_px; });
-  constexpr double kZigzag_px = 0.05;
-  const double once_px = std::max(kZigzag_px, 2.0 * overlap_px);
   found.erase(
       std::unique(found.begin(), found.end(),
                   [once_px](const Abreast& p, const Abreast& q) { return p.track == q.track && q.along_px - p.along_px < once_px; }),
@@ -149,16 +149,16 @@ std::vector<Abreast> lines_abreast(const TrackSample& from, const Tracks& to, co
 
 /// Two strokes on one line: more of them run side by side than lines do. The first ones drawn are the lines, the others too many.
 bool is_surplus(const JudgedTracks& tracks, const DrawnLines& drawing, const Search& search, size_t sample, double distance_px) {
-  constexpr double kAbreast_px = 0.3, kOverlap_px = 0.05, kMoreAngle_deg = 10.0;
+  constexpr double kAbreast_px = 0.3, kOverlap_px = 0.05, kZigzag_px = 2.0 * kOverlap_px, kMoreAngle_deg = 10.0;
   const TrackSample& at = tracks.drawn.samples[sample];
-  const std::vector<Abreast> strokes = lines_abreast(at, tracks.drawn, search, kAbreast_px, 0.0);
+  const std::vector<Abreast> strokes = lines_abreast(at, tracks.drawn, search, kAbreast_px, 0.0, kZigzag_px + 2.0 * drawing.resolution_px);
   if (strokes.size() < 2) return false;
-  // A stroke that just counts must not lack its line because the line just does not: lines count farther off, beyond their ends, and at
-  // larger angles.
+  // A stroke that just counts must not lack its line because the line just does not: lines count farther off, beyond their ends, at larger
+  // angles, and nearer to where they turn back.
   const double reach = kAbreast_px + drawing.resolution_px + 2.0 * distance_px;
   Search wider = search;
   wider.least_cosine = std::cos(std::acos(search.least_cosine) + glm::radians(kMoreAngle_deg));
-  const size_t lines = std::max<size_t>(1, lines_abreast(at, tracks.visible, wider, reach, kOverlap_px).size());
+  const size_t lines = std::max<size_t>(1, lines_abreast(at, tracks.visible, wider, reach, kOverlap_px, kZigzag_px).size());
   const Track& own = tracks.drawn.tracks[static_cast<size_t>(at.track)];
   const double along = (static_cast<double>(sample) - own.first + 0.5) * own.step();
   constexpr double kSame_px = 0.1;

@@ -254,6 +254,24 @@ TEST(Judge, FindsNothingWhereALineTurnsBackBesideAnother) {
   }
 }
 
+/// A line passes the tip of another one, which turns back beside it.
+TEST(Judge, FindsNothingWhereALinePassesATip) {
+  std::mt19937 random(random_seed());
+  std::uniform_real_distribution<double> offset(0.0, 0.25), turn(0.0, 2.0 * std::numbers::pi);
+  for (int i = 0; i < 300; ++i) {
+    const double direction = turn(random);
+    const glm::dvec2 middle(300.0 + offset(random), 200.0 + offset(random)), along(std::cos(direction), std::sin(direction)),
+        across(-along.y, along.x);
+    const auto at = [&](double u, double v) { return middle + u * along + v * across; };
+    // Samples lie anywhere beside the tip.
+    const double from = -20.0 - offset(random);
+    expect_clean(own_drawing_judged(
+        graph_of({{{at(-0.48, 0.0), at(0.0, 0.0), at(-0.18, 0.01), at(-0.43, 0.03), at(-0.88, 0.08), at(-5.0, 0.6), at(from, 8.0)}},
+                  {{at(from, -0.013), at(20.0, -0.013)}}})));
+    if (HasFailure()) FAIL() << "direction " << direction;
+  }
+}
+
 TEST(Judge, DoesNotMissWhatNoFileHas) {
   const Judgement judgement =
       own_drawing_judged(graph_of({{{{100.0, 100.0}, {150.0, 120.0}}}, {{{300.00001, 200.0}, {300.00003, 200.0}}}}));

@@ -59,6 +59,19 @@ Camera turned(Camera camera) {
   return camera;
 }
 
+/// How far turned() moves what is drawn, px: in perspective most what is nearest to the eye.
+double turned_px(const Camera& camera, const ViewGraph& graph) {
+  double most = 0.0;
+  for (const LineEdge& edge : graph.edges) {
+    for (const LinePoint& point : edge.points) {
+      const bool perspective = camera.projection == Projection::perspective;
+      const double way = perspective ? glm::length(camera.eye) : std::abs(point.depth);
+      if (point.depth > 0.0 || !perspective) most = std::max(most, kViewTurn * way * pixels_per_unit_at(camera, point.depth));
+    }
+  }
+  return most;
+}
+
 /// What is drawn in the place of the scene's meshes.
 const Scene& kept_smooth(const Scene& scene, const LineSettings& settings, KeptLines& kept) {
   std::shared_ptr<const SmoothedScene>& smoothed = kept.smoothed;
@@ -174,7 +187,9 @@ ViewGraph graph_of(FoundLines found, const LineTask& task, const ExecutionSettin
   add_chains(graph);
   graph.conflicts = std::move(found.cut.conflicts);
   graph.rays = found.cut.rays;
-  graph.bound_px = task.settings.tolerance_px + unrefined_px;
+  // As a rule a hundredth of the tolerance, or less, which the tolerance has room for.
+  const double turn_px = turned_px(task.camera, graph);
+  graph.bound_px = task.settings.tolerance_px + unrefined_px + (turn_px > 0.1 * task.settings.tolerance_px ? turn_px : 0.0);
   if (execution.progress) execution.progress(1.0);
   return graph;
 }

@@ -27,7 +27,7 @@ void write_image(const Image<glm::vec4>& linear_premultiplied, const std::filesy
 void write_image(const Image<glm::u8vec4>& bytes, const std::filesystem::path& file);
 /// The same PNG in memory, for pages that hold their pictures.
 std::vector<std::byte> encode_png(const Image<glm::vec4>& linear_premultiplied);
-std::vector<std::byte> encode_png(const Image<glm::u8vec4>& bytes);
+std::vector<std::byte> encode_png(const Image<glm::u8vec4>& bytes);  ///< Of bytes as Picture::bytes has them.
 
 /// One named channel of an image file, top row first. Throws InputError.
 Image<float> read_channel(const std::filesystem::path& file, const std::string& channel);

@@ -21,7 +21,7 @@ enum class TruthReference {
 struct TruthProxy;  // raymarch/truth/proxy.h
 /// What the truths of several views of one scene have in common, made with the first of them. Used by one truth at a time.
 struct TruthCache {
-  std::shared_ptr<const TruthProxy> proxy{};
+  std::shared_ptr<const TruthProxy> proxy{};  ///< Null before the first.
 };
 
 /// Which border is solved, and how precisely.

@@ -38,12 +38,12 @@ struct PageAllocator {
   bool operator==(const PageAllocator&) const { return true; }  ///< All are alike.
 };
 template <class T>
-using LargePageAllocator = PageAllocator<T, LargePages>;
+using LargePageAllocator = PageAllocator<T, LargePages>;  ///< Of memory that waits to be used again.
 
 /// Whoever fills them touches their pages first: many threads at once, where many fill them.
 template <class T>
 using LargeVector = std::vector<T, LargePageAllocator<T>>;
 template <class T>
-using PassingVector = std::vector<T, PageAllocator<T, PassingPages>>;
+using PassingVector = std::vector<T, PageAllocator<T, PassingPages>>;  ///< Of memory that is soon given back.
 
 }  // namespace limn

@@ -19,7 +19,7 @@ struct Edge {
   std::int32_t face_count = 0;  ///< At least 1.
   bool consistent = true;       ///< The two faces run along it in opposite directions, as on an orientable surface.
 };
-using Edges = PassingVector<Edge>;
+using Edges = PassingVector<Edge>;  ///< Each edge once.
 
 /// All edges of a mesh, each once.
 Edges build_edges(const Mesh& mesh);

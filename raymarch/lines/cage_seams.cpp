@@ -29,12 +29,12 @@ struct Tracer {
 
 /// Corners of a use at the nodes from and to.
 struct UseCorners {
-  const LimitTriangle* triangle = nullptr;
+  LimitTriangle triangle{};
   int from = 0, to = 0;
 };
 UseCorners corners_of(const LimitGrid& grid, const SeamUse& use, std::uint32_t from) {
-  UseCorners corners{&grid.triangles[use.triangle], use.from, (use.from + 1) % 3};
-  if (corners.triangle->corners[static_cast<size_t>(corners.from)].node != from) std::swap(corners.from, corners.to);
+  UseCorners corners{triangle_of(grid, use.triangle), use.from, (use.from + 1) % 3};
+  if (corners.triangle.corners[static_cast<size_t>(corners.from)].node != from) std::swap(corners.from, corners.to);
   return corners;
 }
 
@@ -43,8 +43,8 @@ bool is_smooth(const LimitGrid& grid, std::span<const SeamUse> uses, std::uint32
   if (uses.size() != 2) return false;
   const UseCorners one = corners_of(grid, uses[0], a), two = corners_of(grid, uses[1], a);
   const bool opposite = (one.from == uses[0].from) != (two.from == uses[1].from);
-  return opposite && side_towards(*one.triangle, one.from, one.to) == side_towards(*two.triangle, two.from, two.to) &&
-         side_towards(*one.triangle, one.to, one.from) == side_towards(*two.triangle, two.to, two.from);
+  return opposite && side_towards(one.triangle, one.from, one.to) == side_towards(two.triangle, two.from, two.to) &&
+         side_towards(one.triangle, one.to, one.from) == side_towards(two.triangle, two.to, two.from);
 }
 
 /// At the share t of the way from node `from` to its other node.
@@ -53,8 +53,8 @@ SeamSample sample_seam(const Tracer& tracer, const SeamEdge& edge, std::uint32_t
   result.object = tracer.object;
   for (const SeamUse& use : edge.uses) {
     const UseCorners at = corners_of(tracer.grid, use, from);
-    const auto corner = [&](int i) -> const LimitCorner& { return at.triangle->corners[static_cast<size_t>(i)]; };
-    const LimitSample s = sample(tracer.placed, at.triangle->patch, glm::mix(corner(at.from).uv(), corner(at.to).uv(), t));
+    const auto corner = [&](int i) -> const LimitCorner& { return at.triangle.corners[static_cast<size_t>(i)]; };
+    const LimitSample s = sample(tracer.placed, at.triangle.patch, glm::mix(corner(at.from).uv(), corner(at.to).uv(), t));
     const glm::dvec3 &pa = tracer.grid.positions[corner(at.from).node], &pb = tracer.grid.positions[corner(at.to).node];
     const glm::dvec3& third = tracer.grid.positions[corner((use.from + 2) % 3).node];
     if (result.sides.empty()) result.p = s.valid ? s.position : glm::mix(pa, pb, t);
@@ -62,8 +62,8 @@ SeamSample sample_seam(const Tracer& tracer, const SeamEdge& edge, std::uint32_t
     // At the ends the lattice knows of normals that a patch does not have there.
     const bool end = t == 0.0 || t == 1.0;
     side.normal = s.valid && !end ? s.normal
-                  : t < 0.5       ? tracer.grid.normals[side_towards(*at.triangle, at.from, at.to)]
-                                  : tracer.grid.normals[side_towards(*at.triangle, at.to, at.from)];
+                  : t < 0.5       ? tracer.grid.normals[side_towards(at.triangle, at.from, at.to)]
+                                  : tracer.grid.normals[side_towards(at.triangle, at.to, at.from)];
     const glm::dvec3 across = glm::cross(side.normal, pb - pa);
     side.into = glm::dot(across, third - pa) < 0.0 ? -across : across;
     side.facing = glm::dot(side.normal, view_vector(tracer.camera, result.p));

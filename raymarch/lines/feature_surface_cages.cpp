@@ -184,16 +184,16 @@ std::vector<FeatureSurface> cage_features(const LineTask& task, const std::vecto
     // A node is a side of the grid: what shares its place and its normal.
     std::vector<std::pair<std::uint32_t, glm::dvec2>> place_of(grid.normals.size(), {kNone, {}});
     std::vector<CageTriangle> triangles;
-    for (const LimitTriangle& triangle : grid.triangles) {
+    for_triangles(grid, 0, triangle_count(grid), [&](std::uint32_t, const LimitTriangle& triangle) {
       const auto& c = triangle.corners;
       const bool tip = std::any_of(c.begin(), c.end(), [](const LimitCorner& corner) { return corner.side != corner.side_back; });
-      if (tip || !may_be_seen(task.camera, {grid.positions[c[0].node], grid.positions[c[1].node], grid.positions[c[2].node]})) continue;
+      if (tip || !may_be_seen(task.camera, {grid.positions[c[0].node], grid.positions[c[1].node], grid.positions[c[2].node]})) return;
       triangles.push_back({triangle.patch, {c[0].uv(), c[1].uv(), c[2].uv()}});
       surface.triangles.push_back({c[0].side, c[1].side, c[2].side});
       for (const LimitCorner& corner : c) {
         if (place_of[corner.side].first == kNone) place_of[corner.side] = {triangle.patch, corner.uv()};
       }
-    }
+    });
     surface.nodes.resize(place_of.size());
     parallel_for(size_t{0}, place_of.size(), [&](size_t i) {
       if (place_of[i].first != kNone) surface.nodes[i] = patches->point_at(place_of[i].first, place_of[i].second);

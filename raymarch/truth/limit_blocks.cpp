@@ -3,35 +3,55 @@
 #include <numbers>
 
 #include "raymarch/truth/limit_grid.h"
-#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
 
-constexpr std::uint32_t kBlockTriangles = 16;
+constexpr int kBlockCells = 8;        // of a row
 constexpr double kBlockSlack = 1e-7;  // radians
 
-LimitBlock block_of(const LimitGrid& grid, std::uint32_t first, std::uint32_t end) {
-  LimitBlock block{first, end};
-  Box box;
-  const auto for_sides = [&](const auto& visit) {
-    for (std::uint32_t t = first; t < end; ++t) {
-      for (const LimitCorner& corner : grid.triangles[t].corners) {
-        visit(corner.side);
-        if (corner.side_back != corner.side) visit(corner.side_back);
-      }
+int blocks_in_row(const LimitLattice& lattice, int row) { return (lattice.cells(row) + kBlockCells - 1) / kBlockCells; }
+
+/// Cells of a row, from `begin` to before `end`.
+struct Stretch {
+  int row = 0, begin = 0, end = 0;
+};
+
+/// The sides of a stretch's samples, each at least once.
+template <class Visit>
+void for_sides(const LimitLattice& lattice, const Stretch& stretch, const Visit& visit) {
+  for (int row = stretch.row; row <= stretch.row + 1; ++row) {
+    const int last = lattice.shape.triangle ? std::min(stretch.end, lattice.steps - row) : stretch.end;
+    for (int column = stretch.begin; column <= last; ++column) visit(place_of(lattice, column, row));
+  }
+  if (lattice.with_tips.empty()) return;
+  const size_t begin = lattice.row_begin(stretch.row) + static_cast<size_t>(2 * stretch.begin);
+  const size_t end =
+      std::min<size_t>(lattice.row_begin(stretch.row) + static_cast<size_t>(2 * stretch.end), lattice.row_begin(stretch.row + 1));
+  for (size_t t = begin; t < end; ++t) {
+    for (const LimitCorner& corner : lattice.with_tips[t].corners) {
+      visit(LimitLattice::Place{corner.node, corner.side});
+      visit(LimitLattice::Place{corner.node, corner.side_back});
     }
-  };
-  for_sides([&](std::uint32_t side) {
-    box = include(box, grid.positions[grid.node_of_side[side]]);
-    block.axis += grid.normals[side];
+  }
+}
+
+LimitBlock block_of(const LimitGrid& grid, const LimitLattice& lattice, const Stretch& stretch) {
+  const std::uint32_t row_begin = lattice.first_triangle + lattice.row_begin(stretch.row),
+                      row_end = lattice.first_triangle + lattice.row_begin(stretch.row + 1);
+  LimitBlock block{row_begin + static_cast<std::uint32_t>(2 * stretch.begin),
+                   std::min(row_begin + static_cast<std::uint32_t>(2 * stretch.end), row_end)};
+  Box box;
+  for_sides(lattice, stretch, [&](const LimitLattice::Place& at) {
+    box = include(box, grid.positions[at.node]);
+    block.axis += grid.normals[at.side];
   });
   block.center = box.center();
   block.radius = box.radius();
   const double length = glm::length(block.axis);
   block.axis = length > 0.0 ? block.axis / length : glm::dvec3(0.0);
   double least = 1.0;
-  for_sides([&](std::uint32_t side) { least = std::min(least, glm::dot(block.axis, grid.normals[side])); });
+  for_sides(lattice, stretch, [&](const LimitLattice::Place& at) { least = std::min(least, glm::dot(block.axis, grid.normals[at.side])); });
   // Cosines say little of small angles.
   block.angle = length > 0.0 ? std::acos(std::max(least, -1.0)) + kBlockSlack : std::numbers::pi;
   block.sine = std::sin(block.angle);
@@ -41,32 +61,17 @@ LimitBlock block_of(const LimitGrid& grid, std::uint32_t first, std::uint32_t en
 
 }  // namespace
 
-std::vector<LimitBlock> blocks_of(const LimitGrid& grid) {
-  // Stretches of the grid, each from where a patch begins.
-  constexpr std::uint32_t kStretch = 1u << 16;
-  const auto count = static_cast<std::uint32_t>(grid.triangles.size());
-  const auto begin = [&](std::uint32_t i) {
-    i = std::min(i, count);
-    while (i > 0 && i < count && grid.triangles[i].patch == grid.triangles[i - 1].patch) ++i;
-    return i;
-  };
-  std::vector<std::vector<LimitBlock>> stretches(count / kStretch + 1);
-  parallel_each(stretches.size(), [&](size_t s) {
-    const auto from = static_cast<std::uint32_t>(s) * kStretch;
-    const std::uint32_t last = begin(from + kStretch);
-    for (std::uint32_t first = begin(from); first < last;) {
-      std::uint32_t end = first + 1;
-      while (end < std::min(first + kBlockTriangles, last) && grid.triangles[end].patch == grid.triangles[first].patch) ++end;
-      stretches[s].push_back({first, end});
-      first = end;
-    }
-  });
-  std::vector<LimitBlock> blocks;
-  for (const std::vector<LimitBlock>& stretch : stretches) blocks.insert(blocks.end(), stretch.begin(), stretch.end());
-  parallel_parts(blocks.size(), size_t{256}, [&](const IndexRange<size_t>& range) {
-    for (size_t b = range.begin(); b < range.end(); ++b) blocks[b] = block_of(grid, blocks[b].first, blocks[b].end);
-  });
-  return blocks;
+size_t block_count(const LimitLattice& lattice) {
+  size_t count = 0;
+  for (int row = 0; row < lattice.steps; ++row) count += static_cast<size_t>(blocks_in_row(lattice, row));
+  return count;
+}
+
+void write_blocks(const LimitGrid& grid, const LimitLattice& lattice, LimitBlock* to) {
+  for (int row = 0; row < lattice.steps; ++row) {
+    const int cells = lattice.cells(row), blocks = blocks_in_row(lattice, row);
+    for (int b = 0; b < blocks; ++b) *to++ = block_of(grid, lattice, {row, cells * b / blocks, cells * (b + 1) / blocks});
+  }
 }
 
 }  // namespace limn

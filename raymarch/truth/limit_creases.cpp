@@ -10,7 +10,7 @@ namespace {
 
 /// A sheet that ends on a seam: its corners at the edge's two nodes, in the order of the first use.
 struct CreaseSide {
-  const LimitTriangle* triangle = nullptr;
+  LimitTriangle triangle{};
   int from = 0, to = 0;
   double f0 = 0.0, f1 = 0.0;  ///< N.V at the nodes.
   glm::dvec3 third{0.0};
@@ -19,14 +19,14 @@ struct CreaseSide {
 
 CreaseSide crease_side(const LimitTracer& tracer, const SeamUse& use, std::uint32_t first_node) {
   CreaseSide side;
-  side.triangle = &tracer.grid.triangles[use.triangle];
+  side.triangle = triangle_of(tracer.grid, use.triangle);
   side.from = use.from;
   side.to = (use.from + 1) % 3;
-  if (side.triangle->corners[static_cast<size_t>(side.from)].node != first_node) std::swap(side.from, side.to);
+  if (side.triangle.corners[static_cast<size_t>(side.from)].node != first_node) std::swap(side.from, side.to);
   side.on_left = (side.from == use.from) != tracer.mirrored;
-  side.f0 = tracer.facing[side_towards(*side.triangle, side.from, side.to)];
-  side.f1 = tracer.facing[side_towards(*side.triangle, side.to, side.from)];
-  side.third = tracer.grid.positions[side.triangle->corners[static_cast<size_t>((use.from + 2) % 3)].node];
+  side.f0 = tracer.facing[side_towards(side.triangle, side.from, side.to)];
+  side.f1 = tracer.facing[side_towards(side.triangle, side.to, side.from)];
+  side.third = tracer.grid.positions[side.triangle.corners[static_cast<size_t>((use.from + 2) % 3)].node];
   return side;
 }
 
@@ -38,10 +38,10 @@ struct SideSample {
 };
 
 SideSample sample_side(const LimitTracer& tracer, const CreaseSide& side, double t) {
-  const auto corner = [&](int i) { return side.triangle->corners[static_cast<size_t>(i)]; };
-  const LimitSample s = sample(tracer.placed, side.triangle->patch, glm::mix(corner(side.from).uv(), corner(side.to).uv(), t));
+  const auto corner = [&](int i) { return side.triangle.corners[static_cast<size_t>(i)]; };
+  const LimitSample s = sample(tracer.placed, side.triangle.patch, glm::mix(corner(side.from).uv(), corner(side.to).uv(), t));
   if (s.valid) return {s.normal, glm::dot(s.normal, view_vector(tracer.camera, s.position))};
-  return {tracer.grid.normals[side_towards(*side.triangle, side.from, side.to)], side.f0 + t * (side.f1 - side.f0)};
+  return {tracer.grid.normals[side_towards(side.triangle, side.from, side.to)], side.f0 + t * (side.f1 - side.f0)};
 }
 
 struct Break {
@@ -53,7 +53,7 @@ void add_breaks(LimitTracer& tracer, const CreaseSide& side, std::vector<Break>&
   const double c = tracer.level.threshold;
   const auto add = [&](double level, int kind) {
     if ((side.f0 - level >= 0.0) == (side.f1 - level >= 0.0)) return;
-    breaks.push_back({root_on(tracer, *side.triangle, side.from, side.to, kind), end_on(tracer, *side.triangle, side.from, side.to, kind)});
+    breaks.push_back({root_on(tracer, side.triangle, side.from, side.to, kind), end_on(tracer, side.triangle, side.from, side.to, kind)});
   };
   add(c, 0);
   if (c > 0.0) add(0.0, 1);
@@ -69,8 +69,8 @@ bool is_on(const LimitTracer& tracer, double facing1, double facing2) {
 /// The seam's ends, and where any of its sheets turns from the one side of the threshold to the other.
 std::vector<Break> breaks_of(LimitTracer& tracer, const std::vector<CreaseSide>& sides) {
   const CreaseSide& one = sides.front();
-  const auto corner = [&](int i) { return one.triangle->corners[static_cast<size_t>(i)]; };
-  const auto node_end = [&](int i) { return LimitEnd{{corner(i).node, 0, 2}, one.triangle->patch, corner(i).uv()}; };
+  const auto corner = [&](int i) { return one.triangle.corners[static_cast<size_t>(i)]; };
+  const auto node_end = [&](int i) { return LimitEnd{{corner(i).node, 0, 2}, one.triangle.patch, corner(i).uv()}; };
   std::vector<Break> breaks{{0.0, node_end(one.from)}};
   for (const CreaseSide& side : sides) add_breaks(tracer, side, breaks);
   breaks.push_back({1.0, node_end(one.to)});
@@ -80,13 +80,13 @@ std::vector<Break> breaks_of(LimitTracer& tracer, const std::vector<CreaseSide>&
 
 /// Between two breaks, both ends in one patch, so that places between them can be asked for.
 LimitSegment piece_of(const LimitTracer& tracer, const CreaseSide& one, const Break& first, const Break& second) {
-  const LimitCorner &from = one.triangle->corners[static_cast<size_t>(one.from)], &to = one.triangle->corners[static_cast<size_t>(one.to)];
+  const LimitCorner &from = one.triangle.corners[static_cast<size_t>(one.from)], &to = one.triangle.corners[static_cast<size_t>(one.to)];
   LimitSegment segment;
   segment.crease = true;
   segment.beside_is_bounded = true;
   segment.along = tracer.grid.positions[to.node] - tracer.grid.positions[from.node];
   const Break* ends[2] = {&first, &second};
-  for (size_t e = 0; e < 2; ++e) segment.ends[e] = {ends[e]->end.key, one.triangle->patch, glm::mix(from.uv(), to.uv(), ends[e]->t)};
+  for (size_t e = 0; e < 2; ++e) segment.ends[e] = {ends[e]->end.key, one.triangle.patch, glm::mix(from.uv(), to.uv(), ends[e]->t)};
   return segment;
 }
 
@@ -119,7 +119,7 @@ struct Seen {
 
 std::vector<Seen> seen_at(const LimitTracer& tracer, const std::vector<CreaseSide>& sides, const LimitSegment& piece, double t) {
   const CreaseSide& one = sides.front();
-  const auto node = [&](int i) { return tracer.grid.positions[one.triangle->corners[static_cast<size_t>(i)].node]; };
+  const auto node = [&](int i) { return tracer.grid.positions[one.triangle.corners[static_cast<size_t>(i)].node]; };
   const glm::dvec3 v = view_vector(tracer.camera, glm::mix(node(one.from), node(one.to), t)), to_left = glm::cross(v, piece.along);
   std::vector<Seen> seen;
   for (const CreaseSide& side : sides) {
@@ -173,8 +173,8 @@ void cross_seams(LimitTracer& tracer) {
       if (tracer.level.turn != LimitTurn::back) follow_junction(tracer, sides);
       continue;
     }
-    const auto from = [](const CreaseSide& s) { return side_towards(*s.triangle, s.from, s.to); };
-    const auto to = [](const CreaseSide& s) { return side_towards(*s.triangle, s.to, s.from); };
+    const auto from = [](const CreaseSide& s) { return side_towards(s.triangle, s.from, s.to); };
+    const auto to = [](const CreaseSide& s) { return side_towards(s.triangle, s.to, s.from); };
     if (from(sides[0]) == from(sides[1]) && to(sides[0]) == to(sides[1])) continue;
     follow_crease(tracer, sides[0], sides[1]);
   }

@@ -1,8 +1,9 @@
 #include "raymarch/truth/limit_grid.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
-#include <tuple>
 
 #include "raymarch/truth/limit_cone_tips.h"
 #include "raymarch/truth/seam_nodes.h"
@@ -15,7 +16,6 @@ namespace {
 constexpr double kSamePlace = 1e-6;  // of the extent
 constexpr double kRounding = 1e-12;  // of the largest coordinate: no two evaluations agree better
 constexpr int kFinestSteps = 256;    // along a patch's side
-constexpr size_t kSeamPart = 16384;  // triangles
 constexpr double kTip_px = 0.005;    // the patches' side is so far from its ends after one step, where it shrinks as the step's square
 
 /// Steps along a patch's side: even, so that an n-gon's shares, which have half as many, meet the lattices of its neighbours.
@@ -53,9 +53,10 @@ int steps_for(const PlacedLimitSurface& placed, double longest_px, double cell_p
   return std::clamp(2 * static_cast<int>(std::ceil(0.5 * std::sqrt(longest_px / kTip_px))), steps, kFinestSteps);
 }
 
-struct PatchLattice {
+/// The samples on a patch's sides, which other patches have too: all nodes are numbered by them.
+struct PatchRim {
   int steps = 1;
-  std::vector<LimitSample> samples{};  ///< Rows of v, each of u from 0; a triangle's rows grow shorter.
+  std::vector<LimitSample> samples{};  ///< By rim_index().
   bool valid = true;
   // Of a valid one:
   Box extent{};
@@ -63,56 +64,48 @@ struct PatchLattice {
   double tip_px = 0.0;             ///< LimitGrid::tip_px
 };
 
-size_t lattice_index(const LimitPatch& patch, int steps, int i, int j) {
-  const auto row = static_cast<size_t>(j), n = static_cast<size_t>(steps);
-  const size_t before = patch.triangle ? row * (n + 1) - row * (row - 1) / 2 : row * (n + 1);
-  return before + static_cast<size_t>(i);
+LimitSample sample_at(const PlacedLimitSurface& placed, size_t k, int steps, int column, int row) {
+  return sample(placed, k, glm::dvec2(column, row) / double(steps));
 }
 
 /// From the tips of a patch to the samples around them.
-double tip_px(const PlacedLimitSurface& placed, size_t k, const PatchLattice& lattice, const Camera& camera) {
+double tip_px(const PlacedLimitSurface& placed, size_t k, int steps, const Camera& camera) {
   const LimitPatch& patch = placed.patches[k];
   double widest = 0.0;
   for (size_t corner = 0; corner < 4; ++corner) {
     if (!is_tip(placed, patch, corner)) continue;
     const auto px = [&](int i, int j) {
       const std::array<int, 2> at = kCornerPlaces[corner];
-      const int u = at[0] ? lattice.steps - i : i, v = at[1] ? lattice.steps - j : j;
-      return glm::dvec2(project(camera, lattice.samples[lattice_index(patch, lattice.steps, u, v)].position));
+      const int u = at[0] ? steps - i : i, v = at[1] ? steps - j : j;
+      return glm::dvec2(project(camera, sample_at(placed, k, steps, u, v).position));
     };
     widest = std::max({widest, glm::distance(px(0, 0), px(1, 0)), glm::distance(px(0, 0), px(0, 1)), glm::distance(px(0, 0), px(1, 1))});
   }
   return widest;
 }
 
-size_t samples_of(const LimitPatch& patch, int steps) {
-  const auto n = static_cast<size_t>(steps) + 1;
-  return patch.triangle ? n * (n + 1) / 2 : n * n;
-}
-
-PatchLattice sample_lattice(const PlacedLimitSurface& placed, size_t k, int steps, const Camera& camera) {
-  PatchLattice lattice;
-  lattice.steps = steps;
+PatchRim sample_rim(const PlacedLimitSurface& placed, size_t k, int steps, const Camera& camera) {
   const LimitPatch& patch = placed.patches[k];
-  lattice.samples.reserve(samples_of(patch, steps));
-  for (int j = 0; j <= steps; ++j) {
-    for (int i = 0; i <= (patch.triangle ? steps - j : steps); ++i) {
-      lattice.samples.push_back(sample(placed, k, glm::dvec2(i, j) / double(steps)));
-      lattice.valid = lattice.valid && lattice.samples.back().valid;
-    }
+  PatchRim rim;
+  rim.steps = steps;
+  rim.samples.reserve(rim_size(patch, steps));
+  for (int row = 0; row <= steps; ++row) {
+    const int last = patch.triangle ? steps - row : steps, step = row == 0 || row == steps ? 1 : std::max(last, 1);
+    for (int column = 0; column <= last; column += step) rim.samples.push_back(sample_at(placed, k, steps, column, row));
   }
-  if (!lattice.valid) return lattice;
-  for (const LimitSample& s : lattice.samples) lattice.extent = include(lattice.extent, s.position);
-  lattice.tips = cone_tips(placed, k, steps);
-  lattice.tip_px = tip_px(placed, k, lattice, camera);
-  return lattice;
+  rim.valid = std::all_of(rim.samples.begin(), rim.samples.end(), [](const LimitSample& s) { return s.valid; });
+  if (!rim.valid) return rim;
+  for (const LimitSample& s : rim.samples) rim.extent = include(rim.extent, s.position);
+  rim.tips = cone_tips(placed, k, steps);
+  rim.tip_px = tip_px(placed, k, steps, camera);
+  return rim;
 }
 
 /// Samples nearer to each other than this are one node. Never so little beside the coordinates that cells of that size cannot be counted.
-double same_place(const std::vector<PatchLattice>& lattices) {
+double same_place(const std::vector<PatchRim>& rims) {
   Box extent;
-  for (const PatchLattice& lattice : lattices) {
-    if (lattice.valid) extent = merge(extent, lattice.extent);
+  for (const PatchRim& rim : rims) {
+    if (rim.valid) extent = merge(extent, rim.extent);
   }
   if (extent.empty()) return 1.0;
   const glm::dvec3 farthest = glm::max(glm::abs(extent.lower), glm::abs(extent.upper));
@@ -120,203 +113,115 @@ double same_place(const std::vector<PatchLattice>& lattices) {
   return std::max({kSamePlace * extent.radius(), kRounding * largest, 1e-300});
 }
 
-bool on_rim(const LimitPatch& patch, int steps, int i, int j) {
-  return i == 0 || j == 0 || (patch.triangle ? i + j == steps : i == steps || j == steps);
-}
-
-/// What the samples of a patch are in the grid. They are counted by one thread, in order; all else is done by many.
-struct LatticeNumbers {
-  struct RimCorner {
-    std::uint32_t node = 0, side = 0;
-    std::uint32_t seam = 0;  ///< Of SeamNodes.
-  };
-  std::vector<RimCorner> rim{};  ///< In the order of the samples.
-  struct Row {
-    std::uint32_t first_node = 0, first_side = 0;  ///< Of the samples inside.
-  };
-  std::vector<Row> rows{};
-  size_t first_triangle = 0;
-  std::vector<LimitTriangle> with_tips{};  ///< All triangles, where some of their corners have two sides.
-};
-
-/// A lattice's corners, by lattice_index().
-std::vector<LimitCorner> corners_of(const LimitPatch& patch, int steps, const LatticeNumbers& numbers) {
-  const auto n = static_cast<std::uint16_t>(steps);
-  std::vector<LimitCorner> corners;
-  corners.reserve(samples_of(patch, steps));
-  auto rim = numbers.rim.begin();
-  for (int j = 0; j <= steps; ++j) {
-    LatticeNumbers::Row inside = numbers.rows[static_cast<size_t>(j)];
-    for (int i = 0; i <= (patch.triangle ? steps - j : steps); ++i) {
-      LimitCorner corner{0, 0, 0, static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(j), n};
-      if (on_rim(patch, steps, i, j)) {
-        corner.node = rim->node;
-        corner.side = rim->side;
-        ++rim;
-      } else {
-        corner.node = inside.first_node++;
-        corner.side = inside.first_side++;
-      }
-      corner.side_back = corner.side;
-      corners.push_back(corner);
-    }
-  }
-  return corners;
-}
-
-/// Two triangles a cell, each diagonal from the upper left to the lower right.
-void write_triangles(const LimitPatch& patch, std::uint32_t k, int n, const std::vector<LimitCorner>& corners, LimitTriangle* to) {
-  const auto at = [&](int i, int j) { return corners[lattice_index(patch, n, i, j)]; };
-  for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < (patch.triangle ? n - j : n); ++i) {
-      *to++ = {k, {at(i, j), at(i + 1, j), at(i, j + 1)}};
-      if (!patch.triangle || i + j + 1 < n) *to++ = {k, {at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)}};
-    }
-  }
-}
-
 struct GridCounts {
-  std::uint32_t nodes = 0, sides = 0;
-  size_t triangles = 0;
+  std::uint32_t nodes = 0, sides = 0, triangles = 0;
 };
 
-LatticeNumbers number_lattice(const PlacedLimitSurface& placed, std::uint32_t k, const PatchLattice& lattice, SeamNodes& seams,
-                              GridCounts& counts) {
-  const LimitPatch& patch = placed.patches[k];
-  const int n = lattice.steps;
-  LatticeNumbers numbers;
-  numbers.rim.reserve(4 * static_cast<size_t>(n));
-  numbers.rows.resize(static_cast<size_t>(n) + 1);
-  const auto count_rim = [&](int i, int j) {
-    const LimitSample& s = lattice.samples[lattice_index(patch, n, i, j)];
+/// Nodes are counted row by row: those of the rim that no patch before has, and those inside.
+LimitLattice number_lattice(const PlacedLimitSurface& placed, std::uint32_t k, const PatchRim& rim, SeamNodes& seams, GridCounts& counts) {
+  LimitLattice lattice{k, placed.patches[k], rim.steps, counts.triangles};
+  const int n = rim.steps;
+  lattice.rim.reserve(rim.samples.size());
+  lattice.inside.resize(static_cast<size_t>(n));
+  std::vector<std::uint32_t> seam_of;
+  const auto count_rim = [&] {
+    const LimitSample& s = rim.samples[lattice.rim.size()];
     const std::uint32_t seam = seams.node_at(s.position, counts.nodes);
-    numbers.rim.push_back({seams.nodes()[seam].number, seams.side_of(seam, s.normal, counts.sides), seam});
+    lattice.rim.push_back({seams.nodes()[seam].number, seams.side_of(seam, s.normal, counts.sides)});
+    seam_of.push_back(seam);
   };
-  for (int j = 0; j <= n; ++j) {
-    const int last = patch.triangle ? n - j : n;
-    for (int i = 0; i <= last; ++i) {
-      if (on_rim(patch, n, i, j)) {
-        count_rim(i, j);
-        continue;
-      }
-      numbers.rows[static_cast<size_t>(j)] = {counts.nodes, counts.sides};
-      const auto inside = static_cast<std::uint32_t>(last - 1);
-      counts.nodes += inside;
-      counts.sides += inside;
-      i = last - 1;
+  for (int row = 0; row <= n; ++row) {
+    const int last = lattice.shape.triangle ? n - row : n, inside = last - 1;
+    count_rim();
+    if (row == 0 || row == n) {
+      for (int column = 1; column <= last; ++column) count_rim();
+      continue;
     }
+    lattice.inside[static_cast<size_t>(row)] = {counts.nodes, counts.sides};
+    counts.nodes += static_cast<std::uint32_t>(inside);
+    counts.sides += static_cast<std::uint32_t>(inside);
+    count_rim();
   }
-  numbers.first_triangle = counts.triangles;
-  const size_t triangles = static_cast<size_t>(patch.triangle ? n * n : 2 * n * n);
-  counts.triangles += triangles;
-  if (lattice.tips.empty()) return numbers;
-  numbers.with_tips.resize(triangles);
-  write_triangles(patch, k, n, corners_of(patch, n, numbers), numbers.with_tips.data());
-  take_sides_of_tips(placed, lattice.tips, numbers.with_tips, [&](const LimitCorner& corner, const glm::dvec3& normal) {
-    const auto rim = std::find_if(numbers.rim.begin(), numbers.rim.end(), [&](const auto& one) { return one.node == corner.node; });
-    return seams.side_of(rim->seam, normal, counts.sides);
+  counts.triangles += lattice.triangle_count();
+  if (rim.tips.empty()) return lattice;
+  std::vector<LimitTriangle> triangles;
+  for (std::uint32_t t = 0; t < lattice.triangle_count(); ++t) triangles.push_back(triangle_of(lattice, t));
+  take_sides_of_tips(placed, rim.tips, triangles, [&](const LimitCorner& corner, const glm::dvec3& normal) {
+    const auto at = std::find_if(lattice.rim.begin(), lattice.rim.end(), [&](const auto& place) { return place.node == corner.node; });
+    return seams.side_of(seam_of[static_cast<size_t>(at - lattice.rim.begin())], normal, counts.sides);
   });
-  return numbers;
+  lattice.with_tips = std::move(triangles);
+  return lattice;
 }
 
-/// The triangles of a patch, and its samples but for those on its rim.
-void write_lattice(const PlacedLimitSurface& placed, std::uint32_t k, const PatchLattice& lattice, const LatticeNumbers& numbers,
-                   LimitGrid& grid) {
-  const LimitPatch& patch = placed.patches[k];
-  const int n = lattice.steps;
-  for (int j = 1; j < n; ++j) {
-    const auto [node, side] = numbers.rows[static_cast<size_t>(j)];
-    for (int i = 1; i < (patch.triangle ? n - j : n); ++i) {
-      const LimitSample& s = lattice.samples[lattice_index(patch, n, i, j)];
-      const auto at = static_cast<std::uint32_t>(i - 1);
-      grid.positions[node + at] = s.position;
-      grid.normals[side + at] = s.normal;
-      grid.node_of_side[side + at] = node + at;
+/// Lattices whose rims are in the grid, and room for what is inside them.
+LimitGrid number_grid(const PlacedLimitSurface& placed, const std::vector<PatchRim>& rims) {
+  LimitGrid grid;
+  SeamNodes seams(same_place(rims));
+  GridCounts counts;
+  for (size_t k = 0; k < rims.size(); ++k) {
+    if (!rims[k].valid) {
+      grid.invalid_patches.push_back(k);
+      continue;
     }
+    grid.lattices.push_back(number_lattice(placed, static_cast<std::uint32_t>(k), rims[k], seams, counts));
+    grid.tip_px = std::max(grid.tip_px, rims[k].tip_px);
   }
-  LimitTriangle* const triangles = grid.triangles.data() + numbers.first_triangle;
-  if (numbers.with_tips.empty()) {
-    write_triangles(patch, k, n, corners_of(patch, n, numbers), triangles);
-  } else {
-    std::copy(numbers.with_tips.begin(), numbers.with_tips.end(), triangles);
-  }
-}
-
-void write_seams(const SeamNodes& seams, LimitGrid& grid) {
+  grid.positions.resize(counts.nodes);
+  grid.normals.resize(counts.sides);
+  grid.node_of_side.resize(counts.sides);
   for (const SeamNodes::Node& node : seams.nodes()) grid.positions[node.number] = node.position;
   for (const SeamNodes::Side& side : seams.sides()) {
     grid.normals[side.number] = side.normal;
     grid.node_of_side[side.number] = side.node;
   }
-}
-
-/// The lattices as one grid, without what LimitGrid says of its seams and blocks.
-LimitGrid joined(const PlacedLimitSurface& placed, const std::vector<PatchLattice>& lattices) {
-  LimitGrid grid;
-  SeamNodes seams(same_place(lattices));
-  GridCounts counts;
-  std::vector<LatticeNumbers> numbers(lattices.size());
-  for (size_t k = 0; k < lattices.size(); ++k) {
-    if (!lattices[k].valid) {
-      grid.invalid_patches.push_back(k);
-      continue;
-    }
-    numbers[k] = number_lattice(placed, static_cast<std::uint32_t>(k), lattices[k], seams, counts);
-    grid.tip_px = std::max(grid.tip_px, lattices[k].tip_px);
-  }
-  grid.positions.resize(counts.nodes);
-  grid.normals.resize(counts.sides);
-  grid.node_of_side.resize(counts.sides);
-  grid.triangles.resize(counts.triangles);
-  parallel_for(size_t{0}, lattices.size(), [&](size_t k) {
-    if (lattices[k].valid) write_lattice(placed, static_cast<std::uint32_t>(k), lattices[k], numbers[k], grid);
-  });
-  write_seams(seams, grid);
   return grid;
 }
 
-void find_seams(const PlacedLimitSurface& placed, LimitGrid& grid) {
-  const auto on_side = [](const LimitPatch& patch, const glm::dvec2& a, const glm::dvec2& b) {
-    const auto both = [&](auto&& test) { return test(a) && test(b); };
-    if (both([](const glm::dvec2& p) { return p.x == 0.0; }) || both([](const glm::dvec2& p) { return p.y == 0.0; })) return true;
-    if (patch.triangle) return both([](const glm::dvec2& p) { return p.x + p.y > 1.0 - 1e-9; });
-    return both([](const glm::dvec2& p) { return p.x == 1.0; }) || both([](const glm::dvec2& p) { return p.y == 1.0; });
-  };
-  const auto corner_of = [&](size_t t, int i) -> const LimitCorner& { return grid.triangles[t].corners[static_cast<size_t>(i % 3)]; };
-  const size_t parts = (grid.triangles.size() + kSeamPart - 1) / kSeamPart;
-  std::vector<std::vector<SeamUse>> uses(parts);
-  parallel_for(size_t{0}, parts, [&](size_t part) {
-    for (size_t t = part * kSeamPart; t < std::min((part + 1) * kSeamPart, grid.triangles.size()); ++t) {
-      for (int from = 0; from < 3; ++from) {
-        const LimitCorner &a = corner_of(t, from), &b = corner_of(t, from + 1);
-        if (a.node != b.node && on_side(placed.patches[grid.triangles[t].patch], a.uv(), b.uv()))
-          uses[part].push_back({static_cast<std::uint32_t>(t), from});
-      }
+/// False where some of them have no normal.
+bool sample_inside(const PlacedLimitSurface& placed, const LimitLattice& lattice, LimitGrid& grid) {
+  const int n = lattice.steps;
+  bool valid = true;
+  for (int row = 1; row < n; ++row) {
+    const auto [node, side] = lattice.inside[static_cast<size_t>(row)];
+    for (int column = 1; column < lattice.cells(row); ++column) {
+      const LimitSample s = sample_at(placed, lattice.patch, n, column, row);
+      const auto at = static_cast<std::uint32_t>(column - 1);
+      grid.positions[node + at] = s.position;
+      grid.normals[side + at] = s.normal;
+      grid.node_of_side[side + at] = node + at;
+      valid = valid && s.valid;
     }
-  });
-  using Nodes = std::pair<std::uint32_t, std::uint32_t>;
-  std::vector<std::pair<Nodes, SeamUse>> all;
-  for (const auto& part : uses) {
-    for (const SeamUse& use : part)
-      all.emplace_back(std::minmax(corner_of(use.triangle, use.from).node, corner_of(use.triangle, use.from + 1).node), use);
   }
-  parallel_sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
-    return std::tie(a.first, a.second.triangle, a.second.from) < std::tie(b.first, b.second.triangle, b.second.from);
+  return valid;
+}
+
+/// What is inside the lattices, and their blocks. Patches that have no surface there are marked: then the grid is of no use.
+bool fill_lattices(const PlacedLimitSurface& placed, std::vector<PatchRim>& rims, LimitGrid& grid) {
+  std::vector<size_t> first_block{0};
+  for (const LimitLattice& lattice : grid.lattices) first_block.push_back(first_block.back() + block_count(lattice));
+  grid.blocks.resize(first_block.back());
+  std::atomic<bool> all_valid = true;
+  parallel_for(size_t{0}, grid.lattices.size(), [&](size_t i) {
+    const LimitLattice& lattice = grid.lattices[i];
+    if (!sample_inside(placed, lattice, grid)) {
+      rims[lattice.patch].valid = false;
+      all_valid = false;
+      return;
+    }
+    // While what was written is near.
+    write_blocks(grid, lattice, grid.blocks.data() + first_block[i]);
   });
-  grid.seam_uses.reserve(all.size());
-  for (const auto& [nodes, use] : all) grid.seam_uses.push_back(use);
-  for (size_t first = 0, end = 0; first < all.size(); first = end) {
-    while (end < all.size() && all[end].first == all[first].first) ++end;
-    grid.seams.push_back({all[first].first, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(end)});
-  }
-  const auto starts_at = [&](const SeamUse& use) { return grid.triangles[use.triangle].corners[static_cast<size_t>(use.from)].node; };
-  grid.sheet = std::any_of(grid.seams.begin(), grid.seams.end(), [&](const LimitSeam& seam) {
-    const std::span<const SeamUse> both = uses_of(grid, seam);
-    return both.size() != 2 || starts_at(both[0]) == starts_at(both[1]);
-  });
+  return all_valid;
 }
 
 }  // namespace
+
+const LimitLattice& lattice_of(const LimitGrid& grid, std::uint32_t t) {
+  const auto after = std::upper_bound(grid.lattices.begin(), grid.lattices.end(), t,
+                                      [](std::uint32_t at, const LimitLattice& lattice) { return at < lattice.first_triangle; });
+  return *std::prev(after);
+}
 
 std::vector<PatchSide> patch_sides(const PlacedLimitSurface& placed) {
   std::vector<PatchSide> sides;
@@ -345,12 +250,12 @@ LatticeSteps lattice_steps(const PlacedLimitSurface& placed, const std::vector<P
 }
 
 LimitGrid sample_grid(const PlacedLimitSurface& placed, const Camera& camera, int steps) {
-  std::vector<PatchLattice> lattices(placed.patches.size());
+  std::vector<PatchRim> rims(placed.patches.size());
   parallel_for(size_t{0}, placed.patches.size(),
-               [&](size_t k) { lattices[k] = sample_lattice(placed, k, steps_of(placed.patches[k], steps), camera); });
-  LimitGrid grid = joined(placed, lattices);
-  find_seams(placed, grid);
-  grid.blocks = blocks_of(grid);
+               [&](size_t k) { rims[k] = sample_rim(placed, k, steps_of(placed.patches[k], steps), camera); });
+  LimitGrid grid = number_grid(placed, rims);
+  while (!fill_lattices(placed, rims, grid)) grid = number_grid(placed, rims);
+  find_seams(grid);
   return grid;
 }
 

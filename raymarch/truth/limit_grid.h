@@ -2,24 +2,18 @@
 // A limit surface sampled on a lattice over each of its patches, as one triangulated sheet whose seams are joined: what curves are traced
 // over.
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "raymarch/truth/limit_lattice.h"
 #include "sdf/camera.h"
 #include "sdf/large_pages.h"
 #include "subdiv/refine.h"
 
 namespace limn {
-
-/// A quad face, a triangle of a Loop cage, or a corner's share of an n-gon.
-struct LimitPatch {
-  int face = 0, sub_face = 0;
-  bool share = false;     ///< Of an n-gon.
-  bool triangle = false;  ///< Its domain is u + v <= 1.
-};
 
 /// A point of a patch and the unit world normal there; `valid` false where the surface has none.
 struct LimitSample {
@@ -52,25 +46,6 @@ enum class LimitTurn { none, front, back };
 /// Between unit normals at one place: a crease is sharper, a patch's error is not.
 inline constexpr double kSameLimitNormal = 2e-3;
 
-struct LimitCorner {
-  std::uint32_t node = 0;  ///< The same for all corners at one place.
-  /// The same for all corners of one place that share a normal; index into LimitGrid::normals. On the way to the triangle's next corner,
-  /// and to the one before: at the tip of a cone, as a sharp corner of smooth edges has, each way there has a normal of its own.
-  std::uint32_t side = 0, side_back = 0;
-  std::uint16_t column = 0, row = 0, steps = 1;  ///< Of its patch's lattice. There are many corners: their places are kept small.
-
-  glm::dvec2 uv() const { return glm::dvec2(column, row) / double(steps); }
-};
-struct LimitTriangle {
-  std::uint32_t patch = 0;
-  std::array<LimitCorner, 3> corners{};
-};
-/// The side of corner `at` of a triangle, on the edge to its corner `other`.
-inline std::uint32_t side_towards(const LimitTriangle& triangle, int at, int other) {
-  const LimitCorner& corner = triangle.corners[static_cast<size_t>(at)];
-  return other == (at + 1) % 3 ? corner.side : corner.side_back;
-}
-
 /// A triangle's edge on a side of its patch.
 struct SeamUse {
   std::uint32_t triangle = 0;
@@ -82,24 +57,14 @@ struct LimitSeam {
   std::uint32_t first = 0, end = 0;                 ///< Into LimitGrid::seam_uses.
 };
 
-/// Some triangles in a row: their nodes lie in a ball, and the normals of their sides in a cone. Both together tell of most that no curve
-/// goes through them.
-struct LimitBlock {
-  std::uint32_t first = 0, end = 0;  ///< Into LimitGrid::triangles.
-  glm::dvec3 center{0.0}, axis{0.0};
-  double radius = 0.0;
-  double angle = 0.0;               ///< Between the cone's axis and its surface.
-  double sine = 0.0, cosine = 1.0;  ///< Of it.
-};
-
 struct LimitGrid {
   LargeVector<glm::dvec3> positions{};  ///< Of nodes, world.
   LargeVector<glm::dvec3> normals{};    ///< Of sides, world, unit.
   LargeVector<std::uint32_t> node_of_side{};
-  LargeVector<LimitTriangle> triangles{};
-  std::vector<LimitBlock> blocks{};  ///< All triangles, in order.
-  std::vector<SeamUse> seam_uses{};  ///< In the order of the seams.
-  std::vector<LimitSeam> seams{};    ///< By their nodes.
+  std::vector<LimitLattice> lattices{};  ///< Of all patches that have one, in order: they make the triangles.
+  std::vector<LimitBlock> blocks{};      ///< All triangles, in order.
+  std::vector<SeamUse> seam_uses{};      ///< In the order of the seams.
+  std::vector<LimitSeam> seams{};        ///< By their nodes.
   /// Some seam has not two triangles that run along it opposite ways: the surface has an end, or no outside, and its back may be seen.
   bool sheet = false;
   /// How far from interior vertices of valence 2 the nearest samples are at most, px: so near to them the surface is not resolved.
@@ -111,8 +76,27 @@ inline std::span<const SeamUse> uses_of(const LimitGrid& grid, const LimitSeam& 
   return std::span(grid.seam_uses).subspan(seam.first, seam.end - seam.first);
 }
 
-/// Of all triangles of a grid, in order.
-std::vector<LimitBlock> blocks_of(const LimitGrid& grid);
+inline std::uint32_t triangle_count(const LimitGrid& grid) { return grid.lattices.empty() ? 0 : grid.lattices.back().end_triangle(); }
+/// The lattice that makes triangle `t`.
+const LimitLattice& lattice_of(const LimitGrid& grid, std::uint32_t t);
+inline LimitTriangle triangle_of(const LimitGrid& grid, std::uint32_t t) {
+  const LimitLattice& lattice = lattice_of(grid, t);
+  return triangle_of(lattice, t - lattice.first_triangle);
+}
+/// Calls `visit(t, triangle)` for triangles from `first` to before `end`, in order.
+template <class Visit>
+void for_triangles(const LimitGrid& grid, std::uint32_t first, std::uint32_t end, const Visit& visit) {
+  while (first < end) {
+    const LimitLattice& lattice = lattice_of(grid, first);
+    for (; first < std::min(end, lattice.end_triangle()); ++first) visit(first, triangle_of(lattice, first - lattice.first_triangle));
+  }
+}
+
+/// A lattice's triangles in blocks, in order: written to `to`, which has room for block_count() of them. The grid has the lattice's nodes.
+void write_blocks(const LimitGrid& grid, const LimitLattice& lattice, LimitBlock* to);
+size_t block_count(const LimitLattice& lattice);
+/// The grid's seams, and whether it is a sheet. All its triangles are there.
+void find_seams(LimitGrid& grid);
 
 /// How finely each patch is sampled.
 struct LatticeSteps {

@@ -201,15 +201,15 @@ std::vector<std::uint32_t> triangles_to_cross(LimitTracer& tracer) {
   std::vector<std::uint32_t> triangles;
   for (size_t b = 0; b < may.size(); ++b) {
     if (may[b] == 0) continue;
-    for (std::uint32_t t = grid.blocks[b].first; t < grid.blocks[b].end; ++t) {
-      for (const LimitCorner& corner : grid.triangles[t].corners) {
+    for_triangles(grid, grid.blocks[b].first, grid.blocks[b].end, [&](std::uint32_t t, const LimitTriangle& triangle) {
+      for (const LimitCorner& corner : triangle.corners) {
         for (const std::uint32_t side : {corner.side, corner.side_back}) {
           if (!known[side]) tracer.facing[side] = facing_of(side);
           known[side] = true;
         }
       }
-      if (ask_for_roots(tracer, grid.triangles[t])) triangles.push_back(t);
-    }
+      if (ask_for_roots(tracer, triangle)) triangles.push_back(t);
+    });
   }
   return triangles;
 }
@@ -221,7 +221,7 @@ std::vector<LimitSegment> limit_segments(const PlacedLimitSurface& placed, const
   LimitTracer tracer{placed, grid, camera, level, glm::determinant(placed.world_from_cage.linear) < 0.0};
   const std::vector<std::uint32_t> triangles = triangles_to_cross(tracer);
   find_roots(tracer);
-  for (const std::uint32_t t : triangles) cross_triangle(tracer, grid.triangles[t]);
+  for (const std::uint32_t t : triangles) cross_triangle(tracer, triangle_of(grid, t));
   if (level.seams) cross_seams(tracer);
   return std::move(tracer.segments);
 }

@@ -168,7 +168,7 @@ TEST(TruthLimit, BlocksOfTrianglesHideNoSegment) {
       ASSERT_GT(grid.blocks.size(), 1u);
       // One block of everything, whose normals point everywhere.
       LimitGrid whole = sample_grid(placed, camera, 8.0, 100'000, cell_px);
-      whole.blocks = {{0, static_cast<std::uint32_t>(whole.triangles.size())}};
+      whole.blocks = {{0, triangle_count(whole)}};
       whole.blocks[0].angle = 4.0;
       whole.blocks[0].cosine = -1.0;
       for (const double c : {0.0, 0.4}) {

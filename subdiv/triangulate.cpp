@@ -43,6 +43,23 @@ struct FaceRun {
 /// Faces that are fans of triangles with an area each, which need no second look.
 using PlainFaces = std::vector<char>;
 
+/// Whether a polygon is a quad that turns the same way by far more than rounding at each of its corners: then it is a fan of two triangles
+/// with an area each, whatever triangulate_polygon() and zero_area() round. Most faces of refined meshes are.
+bool is_clearly_convex_quad(std::span<const glm::dvec3> corners) {
+  constexpr double kClearly = 1e-8;  // of the longest edge's square, where those two ask for 1e-14
+  if (corners.size() != 4) return false;
+  const glm::dvec3 edges[4] = {corners[1] - corners[0], corners[2] - corners[1], corners[3] - corners[2], corners[0] - corners[3]};
+  const glm::dvec3 area = vector_area(corners);
+  double longest = 0.0;
+  for (const glm::dvec3& edge : edges) longest = std::max(longest, glm::dot(edge, edge));
+  const double least = kClearly * longest, least_squared = least * least * glm::dot(area, area);
+  for (size_t i = 0; i < 4; ++i) {
+    const double turn = glm::dot(glm::cross(edges[i], edges[(i + 1) % 4]), area);
+    if (!(turn > 0.0 && turn * turn > least_squared)) return false;
+  }
+  return std::isfinite(least_squared);
+}
+
 /// visit(face, its first corner, its corners' vertices, a triangle as three numbers of them) for each triangle; returns how many have no
 /// area and were left out.
 template <class Visit>
@@ -53,12 +70,16 @@ std::int64_t visit_triangles(const Mesh& mesh, const FaceRun& run, PlainFaces& p
   size_t first = run.first_corner;
   for (size_t f = run.first_face; f < run.last_face; ++f) {
     const std::span<const std::int32_t> vertices = face_corners(mesh, static_cast<std::int32_t>(first), f);
-    if (known && plain[f]) {
+    if (!known) {
+      gather_corners(mesh, vertices, corners);
+      plain[f] = is_clearly_convex_quad(corners);
+    }
+    if (plain[f]) {
       for (size_t k = 2; k < vertices.size(); ++k) visit(f, first, vertices, size_t{0}, k - 1, k);
       first += vertices.size();
       continue;
     }
-    gather_corners(mesh, vertices, corners);
+    if (known) gather_corners(mesh, vertices, corners);
     triangulate_polygon(corners, pieces);
     bool is_plain = true;
     std::int32_t third = 1;

@@ -54,6 +54,33 @@ double nearest_rank_quantile(std::span<const WeightedValue> sorted, double share
   return kNone;
 }
 
+double nearest_rank_quantile_of(std::vector<WeightedValue> values, double share) {
+  constexpr std::ptrdiff_t kFew = 32;
+  const auto by_value = [](const WeightedValue& a, const WeightedValue& b) { return a.value < b.value; };
+  double enough = share * total(values);
+  auto begin = values.begin(), end = values.end();
+  // The half that the quantile is in is kept, until few are left.
+  while (end - begin > kFew) {
+    const auto middle = begin + (end - begin) / 2;
+    std::nth_element(begin, middle, end, by_value);
+    const double lower = total(std::span<const WeightedValue>(begin, middle));
+    if (lower >= enough) {
+      end = middle;
+    } else {
+      enough -= lower;
+      begin = middle;
+    }
+  }
+  std::sort(begin, end, by_value);
+  double up_to = 0.0;
+  for (auto one = begin; one != end; ++one) {
+    up_to += one->weight;
+    if (up_to >= enough) return one->value;
+  }
+  // Rounding has left a little of the last one's weight.
+  return values.empty() ? kNone : std::prev(end)->value;
+}
+
 double upper_quantile(std::span<const WeightedValue> sorted, double share) {
   const double all = total(sorted);
   double before = 0.0, result = kNone;

@@ -27,6 +27,9 @@ struct WeightedValue {
 
 /// The smallest value such that those up to it have at least `share` of the weight.
 double nearest_rank_quantile(std::span<const WeightedValue> sorted, double share);
+/// The same of values in any order, which takes no longer than a few looks at each. Sums of weights are rounded in another order: where
+/// those up to a value have the share to the last bit, either this value or the next one is found.
+double nearest_rank_quantile_of(std::vector<WeightedValue> values, double share);
 
 /// The last value before which lies at most `share` of the weight. Differs from the one above where values end exactly at the share: there
 /// it is the next one.

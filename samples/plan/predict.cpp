@@ -22,11 +22,7 @@ constexpr double kMostAngle = 0.5;
 constexpr double kNormalSpread = 3.0;
 
 /// The distance that 95 % of the length keep to; 0 of nothing.
-double upper_part(std::vector<WeightedValue> values) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end(), [](const WeightedValue& a, const WeightedValue& b) { return a.value < b.value; });
-  return nearest_rank_quantile(values, 0.95);
-}
+double upper_part(std::vector<WeightedValue> values) { return values.empty() ? 0.0 : nearest_rank_quantile_of(std::move(values), 0.95); }
 
 /// How fast the radial curvature changes along the border, 1 / world unit squared; 0 where that is not known.
 double curvature_change(const BorderPoint& a, const BorderPoint& b) {

@@ -70,7 +70,25 @@ TEST(Quantile, WeightsCountAsSoManyEqualValues) {
   }
 }
 
+TEST(Quantile, OfUnsortedValuesIsThatOfTheSorted) {
+  std::mt19937 random(8);
+  std::uniform_int_distribution<int> weight(0, 4), many(1, 2000), value(0, 500);
+  for (int round = 0; round < 200; ++round) {
+    // Whole weights, whose sums are exact; some values several times.
+    std::vector<WeightedValue> values(static_cast<size_t>(many(random)));
+    for (WeightedValue& one : values) {
+      one.value = value(random);
+      one.weight = weight(random);
+    }
+    std::vector<WeightedValue> sorted = values;
+    std::sort(sorted.begin(), sorted.end(), [](const WeightedValue& a, const WeightedValue& b) { return a.value < b.value; });
+    for (const double share : {0.0, 0.125, 0.5, 0.75, 0.9375, 1.0})
+      ASSERT_EQ(nearest_rank_quantile_of(values, share), nearest_rank_quantile(sorted, share)) << "round " << round << ", share " << share;
+  }
+}
+
 TEST(Quantile, OfNothingIsNone) {
+  EXPECT_TRUE(std::isnan(nearest_rank_quantile_of({}, 0.5)));
   EXPECT_TRUE(std::isnan(interpolated_quantile({}, 0.5)));
   EXPECT_TRUE(std::isnan(lower_quantile({}, 0.5)));
   EXPECT_TRUE(std::isnan(nearest_rank_quantile(std::vector<double>{}, 0.5)));

@@ -1,7 +1,6 @@
 #include "raymarch/curves/segment_grid.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace limn {
 namespace {
@@ -10,20 +9,21 @@ constexpr double kMostCells = 4e6;
 
 template <class Visit>
 void for_cells(const SegmentGrid& grid, const SegmentEnds& s, const Visit& visit) {
-  for (int row = grid.row_of(std::min(s.a.y, s.b.y)); row <= grid.row_of(std::max(s.a.y, s.b.y)); ++row) {
-    for (int column = grid.column_of(std::min(s.a.x, s.b.x)); column <= grid.column_of(std::max(s.a.x, s.b.x)); ++column) {
+  const int first_column = grid.column_of(std::min(s.a.x, s.b.x)), last_column = grid.column_of(std::max(s.a.x, s.b.x));
+  const int first_row = grid.row_of(std::min(s.a.y, s.b.y)), last_row = grid.row_of(std::max(s.a.y, s.b.y));
+  for (int row = first_row; row <= last_row; ++row)
+    for (int column = first_column; column <= last_column; ++column)
       visit(static_cast<size_t>(row) * static_cast<size_t>(grid.columns) + static_cast<size_t>(column));
-    }
-  }
 }
 
 }  // namespace
 
+// Where nothing is negative, the conversion rounds down.
 int SegmentGrid::column_of(double x) const {
-  return static_cast<int>(std::clamp(std::floor((x - origin.x) / cell_px), 0.0, static_cast<double>(columns - 1)));
+  return static_cast<int>(std::clamp((x - origin.x) / cell_px, 0.0, static_cast<double>(columns - 1)));
 }
 int SegmentGrid::row_of(double y) const {
-  return static_cast<int>(std::clamp(std::floor((y - origin.y) / cell_px), 0.0, static_cast<double>(rows - 1)));
+  return static_cast<int>(std::clamp((y - origin.y) / cell_px, 0.0, static_cast<double>(rows - 1)));
 }
 
 SegmentGrid segment_grid(std::span<const SegmentEnds> segments) {

@@ -4,7 +4,10 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -36,25 +39,25 @@ std::string megabytes(std::int64_t bytes) { return std::to_string(std::max<std::
   throw InputError({.file = file.string(), .field = {}, .value = {}, .problem = problem, .expected = expected});
 }
 
-struct Pipe {
-  int read_end = -1;
-  int write_end = -1;
-  Pipe() {
-    int ends[2];
-    if (::pipe2(ends, O_CLOEXEC) != 0) throw MachineError("cannot open a pipe: " + reason_of(errno));
-    read_end = ends[0];
-    write_end = ends[1];
-    ::fcntl(read_end, F_SETFL, O_NONBLOCK);
+/// A file without a name, in memory that the helper and we see.
+struct AnswerFile {
+  int handle = -1;
+  AnswerFile() : handle(::memfd_create("limn-answer", MFD_CLOEXEC | MFD_ALLOW_SEALING)) {
+    if (handle < 0) throw MachineError("cannot make a file in memory: " + reason_of(errno));
   }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
-  ~Pipe() {
-    ::close(read_end);
-    close_write_end();
-  }
-  void close_write_end() {
-    if (write_end >= 0) ::close(write_end);
-    write_end = -1;
+  AnswerFile(const AnswerFile&) = delete;
+  AnswerFile& operator=(const AnswerFile&) = delete;
+  ~AnswerFile() { ::close(handle); }
+  /// Nobody writes to it any more. False where some process still can: then nothing that is read of it could be relied on.
+  bool seal() const {
+    constexpr int kAll = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL, kTries = 100;
+    // Processes that were ended a moment ago may still have its pages.
+    for (int k = 0; k < kTries; ++k) {
+      if (::fcntl(handle, F_ADD_SEALS, kAll) == 0) return true;
+      if (errno != EBUSY) return false;
+      ::usleep(1000);
+    }
+    return false;
   }
 };
 
@@ -76,7 +79,7 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
 }
 
 /// A program and not a fork of ourselves: a fork of a process with threads may not allocate, and would inherit all our memory.
-pid_t start(const fs::path& program, std::span<const std::string> arguments, const GuardLimits& limits, Pipe& answer) {
+pid_t start(const fs::path& program, std::span<const std::string> arguments, const GuardLimits& limits, const AnswerFile& answer) {
   std::vector<std::string> argv_text{program.string()};
   argv_text.insert(argv_text.end(), arguments.begin(), arguments.end());
   std::vector<std::string> environment_text = helper_environment(limits);
@@ -86,7 +89,7 @@ pid_t start(const fs::path& program, std::span<const std::string> arguments, con
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, answer.write_end, kAnswerHandle);
+  posix_spawn_file_actions_adddup2(&actions, answer.handle, kAnswerHandle);
   posix_spawn_file_actions_addclosefrom_np(&actions, kAnswerHandle + 1);
 
   posix_spawnattr_t attributes;
@@ -107,7 +110,6 @@ pid_t start(const fs::path& program, std::span<const std::string> arguments, con
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) throw MachineError("cannot start " + program.string() + ": " + reason_of(error));
-  answer.close_write_end();
   return child;
 }
 
@@ -117,6 +119,10 @@ void limit_from_outside(pid_t child, const GuardLimits& limits) {
   const rlimit cpu{seconds, seconds + 1}, no_core{0, 0};
   ::prlimit(child, RLIMIT_CPU, &cpu, nullptr);
   ::prlimit(child, RLIMIT_CORE, &no_core, nullptr);
+  // Its answer is the only file that it writes.
+  const auto longest = static_cast<rlim_t>(limits.answer_bytes + 1);
+  const rlimit answer{longest, longest};
+  ::prlimit(child, RLIMIT_FSIZE, &answer, nullptr);
   if (!kAddressSpaceCanBeLimited) return;
   const auto bytes = static_cast<rlim_t>(limits.memory_bytes + kStartAllowance);
   const rlimit memory{bytes, bytes};
@@ -131,41 +137,41 @@ GuardLimits within_our_own(GuardLimits limits) {
   return limits;
 }
 
-enum class Ending { ended, out_of_time, answer_too_long };
+enum class Ending { ended, out_of_time };
 
 bool has_ended(pid_t child) {
   siginfo_t info{};
   return ::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == child;
 }
 
-/// Takes what is in the pipe now. False at its end.
-bool drain(int pipe, std::vector<std::byte>& answer, std::int64_t at_most) {
-  std::byte buffer[1 << 16];
-  while (static_cast<std::int64_t>(answer.size()) <= at_most) {
-    const ssize_t count = ::read(pipe, buffer, sizeof buffer);
-    if (count == 0) return false;
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return true;
-    answer.insert(answer.end(), buffer, buffer + count);
+/// Readable once the process has ended; -1 where the system has no such thing.
+class EndOfProcess {
+ public:
+  explicit EndOfProcess(pid_t child) : handle_(static_cast<int>(::syscall(SYS_pidfd_open, child, 0))) {}
+  EndOfProcess(const EndOfProcess&) = delete;
+  EndOfProcess& operator=(const EndOfProcess&) = delete;
+  ~EndOfProcess() {
+    if (handle_ >= 0) ::close(handle_);
   }
-  return true;
-}
+  /// At most so long; a millisecond where its end makes no event.
+  void wait(std::int64_t most_ms) const {
+    pollfd end{handle_, POLLIN, 0};
+    ::poll(&end, 1, static_cast<int>(std::min<std::int64_t>(most_ms, handle_ >= 0 ? 1000 : 1)));
+  }
 
-Ending receive(pid_t child, int pipe, const GuardLimits& limits, std::vector<std::byte>& answer) {
+ private:
+  int handle_;
+};
+
+Ending wait_for(pid_t child, const GuardLimits& limits) {
   const Clock::time_point deadline = Clock::now() + limits.time;
-  bool open = true;
-  while (true) {
-    // Asked before the pipe is drained: what a helper wrote before it ended is then all there.
-    const bool ended = has_ended(child);
-    if (open) open = drain(pipe, answer, limits.answer_bytes);
-    if (static_cast<std::int64_t>(answer.size()) > limits.answer_bytes) return Ending::answer_too_long;
-    if (ended) return Ending::ended;
+  const EndOfProcess end(child);
+  while (!has_ended(child)) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
     if (left <= 0) return Ending::out_of_time;
-    // With the pipe closed the helper is about to end; its end makes no event that poll would see.
-    pollfd wait{open ? pipe : -1, POLLIN, 0};
-    ::poll(&wait, 1, static_cast<int>(std::min<std::int64_t>(left, open ? 50 : 1)));
+    end.wait(left);
   }
+  return Ending::ended;
 }
 
 /// Ends the helper and all it started, and leaves no zombie. The group is signalled before the leader is reaped: until then its number
@@ -189,7 +195,8 @@ void judge(Ending ending, int status, std::span<const std::byte> answer, const f
   if (ending == Ending::out_of_time)
     refuse(file, "reading it took longer than " + std::to_string(limits.time.count() / 1000) + " s; it is damaged or far too large",
            "an undamaged file");
-  if (ending == Ending::answer_too_long)
+  const bool cut = WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ;
+  if (cut || static_cast<std::int64_t>(answer.size()) > limits.answer_bytes)
     refuse(file, "what is in it takes more than " + megabytes(limits.answer_bytes), "a smaller or an undamaged file");
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
     refuse(file, "reading it used up its processor time; it is damaged or far too large", "an undamaged file");
@@ -231,31 +238,24 @@ fs::path find_helper(const std::string& name) {
   throw MachineError(name + " is not installed (looked in " + looked_in + "); set LIMN_HELPERS to its folder");
 }
 
-std::vector<std::byte> run_guarded(const std::string& name, std::span<const std::string> arguments, const fs::path& file,
-                                   const GuardLimits& asked) {
+MappedBytes run_guarded(const std::string& name, std::span<const std::string> arguments, const fs::path& file, const GuardLimits& asked) {
   const GuardLimits limits = within_our_own(asked);
-  Pipe pipe;
-  std::vector<std::byte> answer;
-  const pid_t child = start(find_helper(name), arguments, limits, pipe);
+  const AnswerFile answer_file;
+  const pid_t child = start(find_helper(name), arguments, limits, answer_file);
   limit_from_outside(child, limits);
   Ending ending;
   try {
-    ending = receive(child, pipe.read_end, limits, answer);
+    ending = wait_for(child, limits);
   } catch (...) {
     reap(child);
     throw;
   }
-  judge(ending, reap(child), answer, file, limits, asked.memory_bytes);
+  const int status = reap(child);
+  if (!answer_file.seal()) refuse(file, "the reader left something behind that can still change its answer", "an undamaged file");
+  MappedBytes answer(answer_file.handle);
+  judge(ending, status, answer, file, limits, asked.memory_bytes);
   return answer;
 }
-
-void ByteReader::take(void* target, size_t size) {
-  if (size > bytes_.size()) damaged();
-  if (size > 0) std::memcpy(target, bytes_.data(), size);
-  bytes_ = bytes_.subspan(size);
-}
-
-void ByteReader::damaged() const { refuse(file_, "the reader's answer breaks off; the file is damaged", "an undamaged file"); }
 
 void check_readable(const fs::path& file, const std::string& what) {
   std::error_code error;

@@ -6,14 +6,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <new>
-
-#include "sdf/error.h"
-#include "sdf/guard.h"
 
 namespace limn {
 namespace {
@@ -37,40 +33,31 @@ void limit_own_memory() {
   ::setrlimit(RLIMIT_AS, &limit);
 }
 
-bool send(std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t count = ::write(kAnswerHandle, bytes.data(), bytes.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return false;
-    bytes = bytes.subspan(static_cast<size_t>(count));
-  }
-  return true;
+int finish(ByteWriter& answer, int code) { return answer.finish() ? code : 1; }
+
+int refuse(ByteWriter& answer, const std::string& reason) {
+  answer.shrink(0);
+  for (const char c : reason) answer.put(static_cast<unsigned char>(c) < ' ' ? ' ' : c);
+  return finish(answer, kExitRefusal);
 }
 
 }  // namespace
 
-int send_answer(std::span<const std::byte> answer) { return send(answer) ? kExitAnswer : 1; }
-
-int send_refusal(const std::string& reason) {
-  std::string line = reason;
-  std::replace_if(
-      line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
-  return send(std::as_bytes(std::span(line))) ? kExitRefusal : 1;
-}
-
-int run_helper(const std::function<std::vector<std::byte>()>& read) {
+int run_helper(const std::function<void(ByteWriter& answer)>& write) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   limit_own_memory();
   // Libraries catch bad_alloc and go on with half an object; ending at once tells what happened.
   std::set_new_handler([] { ::_exit(kExitMemory); });
+  ByteWriter answer(kAnswerHandle);
   try {
-    return send_answer(read());
+    write(answer);
+    return finish(answer, kExitAnswer);
   } catch (const std::bad_alloc&) {
     return kExitMemory;
   } catch (const std::exception& problem) {
-    return send_refusal(problem.what());
+    return refuse(answer, problem.what());
   } catch (...) {
-    return send_refusal("cannot be read");
+    return refuse(answer, "cannot be read");
   }
 }
 

@@ -1,13 +1,13 @@
 #pragma once
 // What run_guarded and its helper programs agree on (sdf/guard.h), and the frame of a helper's main.
 
-#include <cstddef>
 #include <functional>
-#include <vector>
+
+#include "sdf/answer.h"
 
 namespace limn {
 
-inline constexpr int kAnswerHandle = 3;  ///< File descriptor of the answer pipe in the helper.
+inline constexpr int kAnswerHandle = 3;  ///< File descriptor of the answer in the helper: a file in memory.
 inline constexpr int kExitAnswer = 0;    ///< The answer is complete.
 inline constexpr int kExitRefusal = 2;   ///< The answer is one line: why the file cannot be read.
 inline constexpr int kExitMemory = 3;    ///< The memory limit was reached.
@@ -27,9 +27,9 @@ inline constexpr bool kAddressSpaceCanBeLimited = false;
 inline constexpr bool kAddressSpaceCanBeLimited = true;
 #endif
 
-/// The body of a helper program's main: limits its own memory to what the guard said beyond what it has now, ends with its parent,
-/// calls `read`, and sends what it returns. InputError and other exceptions become a refusal, exhausted memory kExitMemory.
-/// Returns main's exit code.
-int run_helper(const std::function<std::vector<std::byte>()>& read);
+/// The body of a helper program's main: limits its own memory to what the guard said beyond what it has now, ends with its parent, and
+/// lets `write` put the answer together. InputError and other exceptions become a refusal (their text in one line, control characters as
+/// spaces), exhausted memory kExitMemory. Returns main's exit code.
+int run_helper(const std::function<void(ByteWriter& answer)>& write);
 
 }  // namespace limn

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
+#include <functional>
 #include <optional>
 
 #include "sdf/error.h"
@@ -10,12 +12,17 @@
 #include "sdf/level_set_leaks.h"
 #include "sdf/level_set_nano.h"
 #include "sdf/local_grid.h"
+#include "sdf/parallel.h"
 #include "sdf/read_vdb.h"
 
 namespace limn {
 namespace {
 
 namespace fs = std::filesystem;
+
+double ms_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& problem, const std::string& expected) {
   throw InputError({.file = file.string(), .field = "grid", .value = {}, .problem = problem, .expected = expected});
@@ -31,7 +38,7 @@ GuardLimits limits_for(const fs::path& file) {
   return limits;
 }
 
-std::vector<std::byte> ask(const fs::path& file, std::vector<std::string> arguments) {
+MappedBytes ask(const fs::path& file, std::vector<std::string> arguments) {
   check_readable(file, "a volume (.vdb .nvdb)");
   // An absolute path is never taken for anything else by whoever reads it.
   arguments.insert(arguments.begin() + 1, fs::absolute(file).string());
@@ -60,15 +67,23 @@ bool well_placed(const glm::ivec3& origin, int multiple) {
   return true;
 }
 
+/// All values at once, several in a register: a branch for each would take ten times as long.
+bool all_finite(std::span<const float> values) {
+  constexpr std::uint32_t kExponent = 0x7f800000u;
+  std::uint32_t bad = 0;
+  for (const float value : values) bad |= (std::bit_cast<std::uint32_t>(value) & kExponent) == kExponent ? 1u : 0u;
+  return bad == 0;
+}
+
 void check_blocks(std::span<const LevelSetBlock> blocks, std::span<const VdbTile> tiles, const fs::path& file) {
   std::vector<std::array<int, 3>> origins;
   origins.reserve(blocks.size());
-  bool good = true;
-  for (const LevelSetBlock& block : blocks) {
-    good = good && well_placed(block.origin, 8) &&
-           std::all_of(std::begin(block.values), std::end(block.values), [](float value) { return std::isfinite(value); });
-    origins.push_back({block.origin.x, block.origin.y, block.origin.z});
-  }
+  for (const LevelSetBlock& block : blocks) origins.push_back({block.origin.x, block.origin.y, block.origin.z});
+  const auto good_part = [&](const IndexRange<size_t>& part, bool so_far) {
+    for (size_t i = part.first; i < part.last; ++i) so_far = so_far && well_placed(blocks[i].origin, 8) && all_finite(blocks[i].values);
+    return so_far;
+  };
+  bool good = parallel_reduce(blocks.size(), size_t{256}, true, good_part, std::logical_and<>());
   std::sort(origins.begin(), origins.end());
   good = good && std::adjacent_find(origins.begin(), origins.end()) == origins.end();
   for (const VdbTile& tile : tiles) good = good && tile.level >= 1 && tile.level <= 3 && well_placed(tile.origin, 8);
@@ -107,18 +122,7 @@ std::shared_ptr<LevelSetData> rebuilt(std::span<const LevelSetBlock> blocks, std
   return rebuild(blocks, tiles, background, world_from_index, name);
 }
 
-void check_surface(LevelSetData& data, const fs::path& file) {
-  if (data.info.bounds.empty())
-    refuse(file, no_surface_problem(data.info.name, data.info.band), "a level set with an inside (" + with_inside_remedy() + ")");
-  if (std::string warning = unsigned_surface_warning(data.info.band); !warning.empty()) data.info.warnings.push_back(std::move(warning));
-}
-
-}  // namespace
-
-std::vector<GridSummary> list_grids(const fs::path& file) { return grids_from_answer(ask(file, {"list"}), file); }
-
-std::vector<GridSummary> grids_from_answer(std::span<const std::byte> bytes, const fs::path& file) {
-  ByteReader answer(bytes, file.string());
+std::vector<GridSummary> read_list(ByteReader& answer) {
   std::vector<GridSummary> grids;
   const auto count = answer.get<std::uint64_t>();
   for (std::uint64_t i = 0; i < count; ++i) {
@@ -132,10 +136,25 @@ std::vector<GridSummary> grids_from_answer(std::span<const std::byte> bytes, con
   return grids;
 }
 
+void check_surface(LevelSetData& data, const fs::path& file) {
+  if (data.info.bounds.empty())
+    refuse(file, no_surface_problem(data.info.name, data.info.band), "a level set with an inside (" + with_inside_remedy() + ")");
+  if (std::string warning = unsigned_surface_warning(data.info.band); !warning.empty()) data.info.warnings.push_back(std::move(warning));
+}
+
+}  // namespace
+
+std::vector<GridSummary> list_grids(const fs::path& file) { return grids_from_answer(ask(file, {"list"}), file); }
+
+std::vector<GridSummary> grids_from_answer(std::span<const std::byte> bytes, const fs::path& file) {
+  ByteReader answer(bytes, file.string());
+  return read_list(answer);
+}
+
 LevelSet read_level_set(const fs::path& file, const std::string& grid) {
   const auto started = std::chrono::steady_clock::now();
   const auto data = level_set_from_answer(ask(file, {"grid", grid}), file);
-  data->info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
+  data->info.build_ms = ms_since(started);
   return LevelSet(data);
 }
 
@@ -144,7 +163,7 @@ std::shared_ptr<LevelSetData> level_set_from_answer(std::span<const std::byte> b
   const std::string name = answer.get_text();
   const Affine world_from_index = read_map(answer, file);
   const auto background = answer.get<float>();
-  const auto blocks = answer.get_vector<LevelSetBlock>();
+  const auto blocks = answer.get_in_place<LevelSetBlock>();
   const auto tiles = answer.get_vector<VdbTile>();
   GridFile beside = read_beside(answer);
   if (!answer.done() || !std::isfinite(background) || !(background > 0.0f) || blocks.empty())
@@ -159,14 +178,19 @@ std::shared_ptr<LevelSetData> level_set_from_answer(std::span<const std::byte> b
   return data;
 }
 
-ReadLevelSets level_sets_from_answer(std::span<const std::byte> bytes, const fs::path& file) {
+VdbFile vdb_file_from_answer(std::span<const std::byte> bytes, const fs::path& file) {
   ByteReader answer(bytes, file.string());
-  ReadLevelSets result;
+  VdbFile result;
+  result.grids = read_list(answer);
+  if (answer.get<std::uint8_t>() == 0) {
+    result.only = level_set_from_answer(answer.get_bytes(), file);
+    return result;
+  }
   std::vector<ReadGrid> grids;
   std::optional<InputError> first;
   const auto leave_out = [&](const std::string& name, const InputError& error) {
     if (!first) first = error;
-    result.left_out.emplace_back("'" + name + "' is left out: " + error.fault().problem);
+    result.several.left_out.emplace_back("'" + name + "' is left out: " + error.fault().problem);
   };
   while (!answer.done()) {
     const std::string name = answer.get_text();
@@ -182,10 +206,16 @@ ReadLevelSets level_sets_from_answer(std::span<const std::byte> bytes, const fs:
     }
   }
   if (grids.empty() && first) throw *first;
-  for (const ReadGrid& grid : join_local_grids(std::move(grids), file.string())) result.grids.push_back({grid.name, LevelSet(grid.data)});
+  for (const ReadGrid& grid : join_local_grids(std::move(grids), file.string()))
+    result.several.grids.push_back({grid.name, LevelSet(grid.data)});
   return result;
 }
 
-ReadLevelSets read_all_level_sets(const fs::path& file) { return level_sets_from_answer(ask(file, {"all"}), file); }
+VdbFile read_vdb_file(const fs::path& file) {
+  const auto started = std::chrono::steady_clock::now();
+  VdbFile result = vdb_file_from_answer(ask(file, {"all"}), file);
+  if (result.only) result.only->info.build_ms = ms_since(started);
+  return result;
+}
 
 }  // namespace limn

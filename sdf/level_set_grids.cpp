@@ -22,25 +22,27 @@ std::vector<GridSummary> level_sets_among(const std::vector<GridSummary>& grids)
   return found;
 }
 
+bool has_grid(const std::filesystem::path& file, const std::string& name) {
+  const std::vector<GridSummary> grids = list_grids(file);
+  return std::any_of(grids.begin(), grids.end(), [&](const GridSummary& grid) { return grid.name == name; });
+}
+
 }  // namespace
 
 ReadLevelSets read_level_sets(const std::filesystem::path& file, std::span<const std::string> names) {
-  const std::vector<GridSummary> grids = list_grids(file), level_sets = level_sets_among(grids);
-  const auto there = [&](const std::string& name) {
-    return std::any_of(grids.begin(), grids.end(), [&](const GridSummary& grid) { return grid.name == name; });
-  };
-  const bool all = names.empty() || (std::find(names.begin(), names.end(), "all") != names.end() && !there("all"));
-  if (all && level_sets.size() > 1) return read_all_level_sets(file);
   ReadLevelSets result;
-  if (all) {
-    LevelSet only = read_level_set(file, "");
+  if (names.empty() || (std::find(names.begin(), names.end(), "all") != names.end() && !has_grid(file, "all"))) {
+    VdbFile read = read_vdb_file(file);
+    if (!read.only) return std::move(read.several);
+    const std::vector<GridSummary> level_sets = level_sets_among(read.grids);
+    LevelSet only(std::move(read.only));
     if (const auto said = local_grid_of(only, file.string()); said && said->sizes > 1)
       throw InputError({file.string(), "grid", only.info().name, "the other voxel sizes of its local level set are missing",
                         "a file as limn exported it; grids = NAME draws one by itself"});
     result.grids.push_back({level_sets.empty() ? only.info().name : level_sets.front().name, std::move(only)});
+    return result;
   }
-  for (const std::string& name : names)
-    if (!all) result.grids.push_back({name, read_level_set(file, name)});
+  for (const std::string& name : names) result.grids.push_back({name, read_level_set(file, name)});
   return result;
 }
 

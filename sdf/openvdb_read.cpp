@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <ios>
 
@@ -91,17 +92,20 @@ void check_signs(const openvdb::FloatGrid& grid, const StoredGrid& stored) {
                   "a grid of class 'level set', or distances that are negative inside");
 }
 
-LevelSetBlock block_of(const openvdb::FloatTree::LeafNodeType& leaf, float background, const std::string& name) {
-  LevelSetBlock block{};
+void write_block(const openvdb::FloatTree::LeafNodeType& leaf, float background, const std::string& name, LevelSetBlock& block) {
   block.origin = {leaf.origin().x(), leaf.origin().y(), leaf.origin().z()};
   for (openvdb::Index word = 0; word < 8; ++word) block.active[word] = leaf.valueMask().getWord<openvdb::Index64>(word);
-  for (openvdb::Index n = 0; n < 512; ++n) {
-    const float value = leaf.getValue(n);
-    if (leaf.isValueOn(n) && !std::isfinite(value))
-      refuse_volume("grid", std::to_string(value), "the grid '" + name + "' holds a distance that is no number", "finite values");
-    block.values[n] = leaf.isValueOn(n) ? value : value < 0.0f ? -background : background;
+  const float* const values = leaf.buffer().data();
+  for (openvdb::Index word = 0; word < 8; ++word) {
+    for (openvdb::Index bit = 0; bit < 64; ++bit) {
+      const openvdb::Index n = 64 * word + bit;
+      const bool active = (block.active[word] >> bit & 1) != 0;
+      block.values[n] = active ? values[n] : values[n] < 0.0f ? -background : background;
+    }
   }
-  return block;
+  const float* const wrong = std::find_if_not(std::begin(block.values), std::end(block.values), [](float v) { return std::isfinite(v); });
+  if (wrong != std::end(block.values))
+    refuse_volume("grid", std::to_string(*wrong), "the grid '" + name + "' holds a distance that is no number", "finite values");
 }
 
 /// Where a band was cut, leaves without a distance may still have an inside and an outside.
@@ -112,12 +116,13 @@ bool has_both_signs(const openvdb::FloatTree::LeafNodeType& leaf) {
   return false;
 }
 
-std::vector<LevelSetBlock> blocks_of(const openvdb::FloatGrid& grid, const std::string& name) {
-  std::vector<LevelSetBlock> blocks;
-  blocks.reserve(grid.tree().leafCount());
+void put_blocks(const openvdb::FloatGrid& grid, const std::string& name, ByteWriter& answer) {
+  std::vector<const openvdb::FloatTree::LeafNodeType*> leaves;
+  leaves.reserve(grid.tree().leafCount());
   for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
-    if (!leaf->isEmpty() || has_both_signs(*leaf)) blocks.push_back(block_of(*leaf, grid.background(), name));
-  return blocks;
+    if (!leaf->isEmpty() || has_both_signs(*leaf)) leaves.push_back(leaf.getLeaf());
+  const std::span<LevelSetBlock> blocks = answer.put_room<LevelSetBlock>(leaves.size());
+  for (size_t i = 0; i < leaves.size(); ++i) write_block(*leaves[i], grid.background(), name, blocks[i]);
 }
 
 std::vector<VdbTile> inner_tiles_of(const openvdb::FloatGrid& grid) {
@@ -136,9 +141,9 @@ std::vector<VdbTile> inner_tiles_of(const openvdb::FloatGrid& grid) {
 
 /// OpenVDB's exceptions name the class they belong to, which says nothing to anyone who gave us a file.
 template <class Read>
-std::vector<std::byte> reading(Read&& read) {
+void reading(Read&& read) {
   try {
-    return read();
+    read();
   } catch (const InputError&) {
     throw;
   } catch (const std::bad_alloc&) {
@@ -188,7 +193,7 @@ void put_file(const StoredGrid& stored, const openvdb::GridBase::Ptr& grid, cons
   answer.put_span(std::span<const DoubleBlock>(filed_type(stored) == "double" ? doubles_of(grid) : std::vector<DoubleBlock>{}));
 }
 
-std::vector<std::byte> answer_of(const StoredGrids& grids, size_t chosen) {
+void put_grid(const StoredGrids& grids, size_t chosen, ByteWriter& answer) {
   const StoredGrid& stored = grids.list[chosen];
   check_kind(stored);
   const openvdb::GridBase::Ptr filed = grids.read(chosen);
@@ -197,59 +202,69 @@ std::vector<std::byte> answer_of(const StoredGrids& grids, size_t chosen) {
   check_voxels(*grid, stored.shown);
   check_signs(*grid, stored);
 
-  ByteWriter answer;
   answer.put_text(stored.name);
   const openvdb::math::Mat4d matrix = filed->transform().baseMap()->getAffineMap()->getMat4();
   for (int row = 0; row < 4; ++row)
     for (int k = 0; k < 3; ++k) answer.put(matrix(row, k));
   answer.put(grid->background());
-  answer.put_span(std::span<const LevelSetBlock>(blocks_of(*grid, stored.shown)));
+  put_blocks(*grid, stored.shown, answer);
   answer.put_span(std::span<const VdbTile>(inner_tiles_of(*grid)));
   put_file(stored, filed, grids.metadata, answer);
-  return answer.bytes;
+}
+
+void put_list(const StoredGrids& grids, ByteWriter& answer) {
+  answer.put(static_cast<std::uint64_t>(grids.list.size()));
+  for (const StoredGrid& grid : grids.list) {
+    answer.put_text(grid.shown);
+    answer.put_text(grid.value_type);
+    answer.put_text(grid.grid_class);
+    answer.put(grid.voxels);
+    answer.put(grid.voxel_size);
+  }
+}
+
+void put_each(const StoredGrids& grids, std::span<const size_t> chosen, ByteWriter& answer) {
+  for (const size_t i : chosen) {
+    answer.put_text(grids.list[i].shown);
+    const size_t before = answer.size();
+    try {
+      reading([&] {
+        answer.put(std::uint8_t{1});
+        const size_t begun = answer.begin_part();
+        put_grid(grids, i, answer);
+        answer.end_part(begun);
+      });
+    } catch (const InputError& error) {
+      answer.shrink(before);
+      answer.put(std::uint8_t{0});
+      answer.put_text(error.fault().problem);
+    }
+  }
 }
 
 }  // namespace
 
-std::vector<std::byte> vdb_list_answer(const fs::path& file) {
-  return reading([&] {
+void put_vdb_list(const fs::path& file, ByteWriter& answer) {
+  reading([&] { put_list(stored_in(file), answer); });
+}
+
+void put_vdb_grid(const fs::path& file, const std::string& name, ByteWriter& answer) {
+  reading([&] {
     const StoredGrids grids = stored_in(file);
-    ByteWriter answer;
-    answer.put(static_cast<std::uint64_t>(grids.list.size()));
-    for (const StoredGrid& grid : grids.list) {
-      answer.put_text(grid.shown);
-      answer.put_text(grid.value_type);
-      answer.put_text(grid.grid_class);
-      answer.put(grid.voxels);
-      answer.put(grid.voxel_size);
-    }
-    return answer.bytes;
+    put_grid(grids, choose(grids.list, name), answer);
   });
 }
 
-std::vector<std::byte> vdb_grid_answer(const fs::path& file, const std::string& name) {
-  return reading([&] {
+void put_vdb_all(const fs::path& file, ByteWriter& answer) {
+  reading([&] {
     const StoredGrids grids = stored_in(file);
-    return answer_of(grids, choose(grids.list, name));
-  });
-}
-
-std::vector<std::byte> vdb_all_answer(const fs::path& file) {
-  return reading([&] {
-    const StoredGrids grids = stored_in(file);
-    ByteWriter answer;
-    for (const size_t i : meant_by("", grids.list)) {
-      answer.put_text(grids.list[i].shown);
-      try {
-        const std::vector<std::byte> own = reading([&] { return answer_of(grids, i); });
-        answer.put(std::uint8_t{1});
-        answer.put_span(std::span<const std::byte>(own));
-      } catch (const InputError& error) {
-        answer.put(std::uint8_t{0});
-        answer.put_text(error.fault().problem);
-      }
-    }
-    return answer.bytes;
+    put_list(grids, answer);
+    const std::vector<size_t> chosen = meant_by("", grids.list);
+    answer.put(static_cast<std::uint8_t>(chosen.size() > 1 ? 1 : 0));
+    if (chosen.size() > 1) return put_each(grids, chosen, answer);
+    const size_t begun = answer.begin_part();
+    put_grid(grids, choose(grids.list, ""), answer);
+    answer.end_part(begun);
   });
 }
 

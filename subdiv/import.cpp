@@ -71,7 +71,7 @@ GuardLimits limits_for(const std::filesystem::path& file, const GuardLimits& mos
 
 Mesh read_in_helper(const std::filesystem::path& file, const ImportSettings& settings) {
   const std::string arguments[] = {file.string(), std::to_string(settings.max_elements)};
-  const std::vector<std::byte> answer = run_guarded("limn-read-mesh", arguments, file, limits_for(file, settings.limits));
+  const MappedBytes answer = run_guarded("limn-read-mesh", arguments, file, limits_for(file, settings.limits));
   ByteReader reader(answer, file.string());
   return get_mesh(reader);
 }

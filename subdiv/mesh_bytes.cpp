@@ -37,11 +37,11 @@ size_t size_of(const std::vector<T>& values) {
 }  // namespace
 
 void put_mesh(ByteWriter& writer, Mesh&& mesh) {
-  // Reserved at once: growing would hold the answer twice. Memory that is reserved and not written yet costs nothing.
+  // Reserved at once: growing would take up to twice as much. Memory that is reserved and not written yet costs nothing.
   constexpr size_t kNames = size_t{1} << 16;
-  writer.bytes.reserve(writer.bytes.size() + kNames + size_of(mesh.positions) + size_of(mesh.face_sizes) + size_of(mesh.corner_vertices) +
-                       size_of(mesh.corner_normals) + size_of(mesh.vertex_colors) + size_of(mesh.face_materials) +
-                       size_of(mesh.face_groups) + size_of(mesh.face_smoothing));
+  writer.reserve(kNames + size_of(mesh.positions) + size_of(mesh.face_sizes) + size_of(mesh.corner_vertices) +
+                 size_of(mesh.corner_normals) + size_of(mesh.vertex_colors) + size_of(mesh.face_materials) + size_of(mesh.face_groups) +
+                 size_of(mesh.face_smoothing));
   put_last(writer, mesh.positions);
   put_last(writer, mesh.face_sizes);
   put_last(writer, mesh.corner_vertices);

@@ -120,7 +120,7 @@ std::optional<glm::dmat4> matrix_of(const OIIO::ImageSpec& spec, const char* nam
   return matrix;
 }
 
-std::vector<std::byte> read(const std::string& file) {
+void read(const std::string& file, limn::ByteWriter& answer) {
   // Other threads would take address space that the limit counts.
   OIIO::attribute("threads", 1);
   OIIO::attribute("exr_threads", -1);
@@ -137,9 +137,7 @@ std::vector<std::byte> read(const std::string& file) {
   picture.camera_from_world = matrix_of(first, "worldToCamera");
   picture.ndc_from_world = matrix_of(first, "worldToNDC");
   for (int part = 0; part == 0 || input->seek_subimage(part, 0); ++part) picture.parts.push_back(read_part(*input, part, file));
-  limn::ByteWriter answer;
   limn::put_picture(answer, picture);
-  return std::move(answer.bytes);
 }
 
 }  // namespace
@@ -149,5 +147,5 @@ int main(int count, char** arguments) {
     std::fputs("usage: limn-read-picture FILE (started by limn, answers on file descriptor 3)\n", stderr);
     return 2;
   }
-  return limn::run_helper([&] { return read(arguments[1]); });
+  return limn::run_helper([&](limn::ByteWriter& answer) { read(arguments[1], answer); });
 }

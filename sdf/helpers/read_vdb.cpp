@@ -1,4 +1,4 @@
-// limn-read-vdb list FILE | grid FILE NAME | all FILE: reads a .vdb that nobody vouches for and sends it through the answer pipe
+// limn-read-vdb list FILE | grid FILE NAME | all FILE: reads a .vdb that nobody vouches for and puts it into the answer
 // (sdf/guard.h).
 #include "sdf/read_vdb.h"
 
@@ -9,9 +9,11 @@
 
 int main(int count, char** arguments) {
   const std::string_view verb = count > 1 ? arguments[1] : "";
-  if (verb == "list" && count == 3) return limn::run_helper([&] { return limn::vdb_list_answer(arguments[2]); });
-  if (verb == "grid" && count == 4) return limn::run_helper([&] { return limn::vdb_grid_answer(arguments[2], arguments[3]); });
-  if (verb == "all" && count == 3) return limn::run_helper([&] { return limn::vdb_all_answer(arguments[2]); });
+  using limn::ByteWriter;
+  if (verb == "list" && count == 3) return limn::run_helper([&](ByteWriter& answer) { limn::put_vdb_list(arguments[2], answer); });
+  if (verb == "grid" && count == 4)
+    return limn::run_helper([&](ByteWriter& answer) { limn::put_vdb_grid(arguments[2], arguments[3], answer); });
+  if (verb == "all" && count == 3) return limn::run_helper([&](ByteWriter& answer) { limn::put_vdb_all(arguments[2], answer); });
   std::fputs("usage: limn-read-vdb list FILE | grid FILE NAME | all FILE (started by limn, answers on file descriptor 3)\n", stderr);
   return 2;
 }

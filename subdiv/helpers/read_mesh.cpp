@@ -170,16 +170,15 @@ class Gatherer {
   Mesh mesh_;
 };
 
-std::vector<std::byte> read(const std::string& file, std::int64_t max_elements) {
+void read(const std::string& file, std::int64_t max_elements, limn::ByteWriter& answer) {
   std::string extension = fs::path(file).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (!extension.empty()) extension.erase(0, 1);
-  limn::ByteWriter writer;
   if (extension == "gltf" || extension == "glb") {
     // Of glTF 1.0 nothing comes back; assimp reads that.
     if (std::optional<Mesh> mesh = limn::read_gltf(file, max_elements)) {
-      limn::put_mesh(writer, std::move(*mesh));
-      return std::move(writer.bytes);
+      limn::put_mesh(answer, std::move(*mesh));
+      return;
     }
   }
   std::string complaint;
@@ -194,8 +193,7 @@ std::vector<std::byte> read(const std::string& file, std::int64_t max_elements) 
            " file with all that it refers to beside it");
   if (!complaint.empty()) refuse("a face's index is out of range; indices below the number of vertices");
   if (scene->mRootNode == nullptr) refuse("the mesh has no faces; at least one face with 3 or more corners");
-  limn::put_mesh(writer, Gatherer(*scene, max_elements).run());
-  return std::move(writer.bytes);
+  limn::put_mesh(answer, Gatherer(*scene, max_elements).run());
 }
 
 }  // namespace
@@ -205,5 +203,5 @@ int main(int count, char** arguments) {
     std::fputs("usage: limn-read-mesh FILE MAX_ELEMENTS (started by limn, answers on file descriptor 3)\n", stderr);
     return 2;
   }
-  return limn::run_helper([&] { return read(arguments[1], std::atoll(arguments[2])); });
+  return limn::run_helper([&](limn::ByteWriter& answer) { read(arguments[1], std::atoll(arguments[2]), answer); });
 }

@@ -14,7 +14,7 @@ void use(std::span<const std::byte> bytes) {
 
   ByteWriter writer;
   put_mesh(writer, mesh);
-  fuzz::require(writer.bytes.size() <= bytes.size(), "a mesh that holds more than was sent");
+  fuzz::require(writer.size() <= bytes.size(), "a mesh that holds more than was sent");
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::span bytes(reinterpret_cast<const std::byte*>(data) + 1, size - 1);
   limn::fuzz::only_refused([&] {
     if (data[0] % 4 == 2) {
-      limn::level_sets_from_answer(bytes, "fuzz.vdb");
+      limn::vdb_file_from_answer(bytes, "fuzz.vdb");
     } else if (data[0] % 4 == 0) {
       limn::grids_from_answer(bytes, "fuzz.vdb");
     } else {

@@ -108,7 +108,7 @@ PictureFile some_answer() {
 TEST(PictureAnswer, BrokenOffAnywhereIsRefused) {
   ByteWriter writer;
   put_picture(writer, some_answer());
-  const std::span<const std::byte> bytes(writer.bytes);
+  const std::span<const std::byte> bytes(writer.bytes());
   EXPECT_EQ(picture_from_answer(bytes, "a.png").parts.at(0).channels.at(1).infinite, 6);
   for (size_t kept = 0; kept < bytes.size(); ++kept) EXPECT_THROW(picture_from_answer(bytes.first(kept), "a.png"), InputError) << kept;
 }
@@ -119,7 +119,7 @@ TEST(PictureAnswer, SizesAndCountsThatCannotBeAreRefusedAndControlCharactersRepl
     change(picture);
     ByteWriter writer;
     put_picture(writer, picture);
-    return picture_from_answer(writer.bytes, "a.png");
+    return picture_from_answer(writer.bytes(), "a.png");
   };
   EXPECT_THROW(taken([](PictureFile& p) { p.parts[0].width_px = 0; }), InputError);
   EXPECT_THROW(taken([](PictureFile& p) { p.parts[0].height_px = 1 << 30; }), InputError);

@@ -35,7 +35,7 @@ class Guard : public testing::Test {
     fs::permissions(folder_.path() / "helper", fs::perms::owner_all);
   }
   std::string answer(const GuardLimits& limits = {}, const std::vector<std::string>& arguments = {}) {
-    const std::vector<std::byte> bytes = run_guarded("helper", arguments, "model.abc", limits);
+    const MappedBytes bytes = run_guarded("helper", arguments, "model.abc", limits);
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
   }
   std::string refusal(const GuardLimits& limits = {}) {
@@ -130,11 +130,11 @@ TEST(GuardBytes, WhatIsWrittenIsReadAndAnAnswerCutAnywhereIsRefused) {
     EXPECT_EQ(reader.get_vector<double>(), (std::vector<double>{1.5, 2.5}));
     EXPECT_TRUE(reader.done());
   };
-  read(writer.bytes);
-  for (size_t size = 0; size < writer.bytes.size(); ++size)
+  read(writer.bytes());
+  for (size_t size = 0; size < writer.size(); ++size)
     EXPECT_THROW(
         {
-          ByteReader reader(std::span(writer.bytes).first(size), "model.abc");
+          ByteReader reader(std::span(writer.bytes()).first(size), "model.abc");
           reader.get<std::int32_t>();
           reader.get_text();
           reader.get_vector<double>();
@@ -144,7 +144,7 @@ TEST(GuardBytes, WhatIsWrittenIsReadAndAnAnswerCutAnywhereIsRefused) {
   // A count that would overflow when multiplied by the size of its items.
   ByteWriter huge;
   huge.put(std::uint64_t{1} << 61);
-  EXPECT_THROW(ByteReader(huge.bytes, "model.abc").get_vector<double>(), InputError);
+  EXPECT_THROW(ByteReader(huge.bytes(), "model.abc").get_vector<double>(), InputError);
 }
 
 TEST(Readable, MissingFoldersEmptyAndSpecialFilesAreRefusedByName) {

@@ -169,7 +169,7 @@ glm::dvec2 read_view_box(const pugi::xml_node& root, SvgFile& svg) {
   return corner;
 }
 
-std::vector<std::byte> read(const std::string& file) {
+void read(const std::string& file, limn::ByteWriter& answer) {
   pugi::xml_document document;
   const pugi::xml_parse_result result = document.load_file(file.c_str(), pugi::parse_default | pugi::parse_ws_pcdata_single);
   if (!result) refuse("no XML: " + std::string(result.description()) + " at byte " + std::to_string(result.offset) + "; an SVG file");
@@ -184,9 +184,7 @@ std::vector<std::byte> read(const std::string& file) {
   above.style = limn::style_of(root, above.style, reading.rules);
   above.transform = SvgTransform({1, 0, 0}, {0, 1, 0}, {-corner.x, -corner.y, 1});
   walk_children(reading, root, above);
-  limn::ByteWriter answer;
   limn::put_svg(answer, reading.svg);
-  return answer.bytes;
 }
 
 }  // namespace
@@ -196,5 +194,5 @@ int main(int count, char** arguments) {
     std::fputs("usage: limn-read-svg FILE (started by limn, answers on file descriptor 3)\n", stderr);
     return 2;
   }
-  return limn::run_helper([&] { return read(arguments[1]); });
+  return limn::run_helper([&](limn::ByteWriter& answer) { read(arguments[1], answer); });
 }

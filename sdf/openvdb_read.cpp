@@ -1,13 +1,17 @@
+#include <tbb/task_arena.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <ios>
 
 #include "sdf/error.h"
-#include "sdf/guard.h"
+#include "sdf/finite.h"
 #include "sdf/openvdb_grid.h"
 #include "sdf/openvdb_metadata.h"
 #include "sdf/openvdb_settle.h"
 #include "sdf/openvdb_stored.h"
+#include "sdf/parallel.h"
 #include "sdf/read_vdb.h"
 
 namespace limn {
@@ -92,7 +96,9 @@ void check_signs(const openvdb::FloatGrid& grid, const StoredGrid& stored) {
                   "a grid of class 'level set', or distances that are negative inside");
 }
 
-void write_block(const openvdb::FloatTree::LeafNodeType& leaf, float background, const std::string& name, LevelSetBlock& block) {
+using Leaf = openvdb::FloatTree::LeafNodeType;
+
+void write_block(const Leaf& leaf, float background, LevelSetBlock& block) {
   block.origin = {leaf.origin().x(), leaf.origin().y(), leaf.origin().z()};
   for (openvdb::Index word = 0; word < 8; ++word) block.active[word] = leaf.valueMask().getWord<openvdb::Index64>(word);
   const float* const values = leaf.buffer().data();
@@ -103,9 +109,14 @@ void write_block(const openvdb::FloatTree::LeafNodeType& leaf, float background,
       block.values[n] = active ? values[n] : values[n] < 0.0f ? -background : background;
     }
   }
-  const float* const wrong = std::find_if_not(std::begin(block.values), std::end(block.values), [](float v) { return std::isfinite(v); });
-  if (wrong != std::end(block.values))
-    refuse_volume("grid", std::to_string(*wrong), "the grid '" + name + "' holds a distance that is no number", "finite values");
+}
+
+void check_finite(std::span<const LevelSetBlock> blocks, const std::string& name) {
+  for (const LevelSetBlock& block : blocks) {
+    const float* const wrong = std::find_if_not(std::begin(block.values), std::end(block.values), [](float v) { return std::isfinite(v); });
+    if (wrong != std::end(block.values))
+      refuse_volume("grid", std::to_string(*wrong), "the grid '" + name + "' holds a distance that is no number", "finite values");
+  }
 }
 
 /// Where a band was cut, leaves without a distance may still have an inside and an outside.
@@ -117,12 +128,26 @@ bool has_both_signs(const openvdb::FloatTree::LeafNodeType& leaf) {
 }
 
 void put_blocks(const openvdb::FloatGrid& grid, const std::string& name, ByteWriter& answer) {
-  std::vector<const openvdb::FloatTree::LeafNodeType*> leaves;
+  std::vector<const Leaf*> leaves;
   leaves.reserve(grid.tree().leafCount());
   for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
     if (!leaf->isEmpty() || has_both_signs(*leaf)) leaves.push_back(leaf.getLeaf());
   const std::span<LevelSetBlock> blocks = answer.put_room<LevelSetBlock>(leaves.size());
-  for (size_t i = 0; i < leaves.size(); ++i) write_block(*leaves[i], grid.background(), name, blocks[i]);
+  std::atomic<bool> good = true;
+  const auto write = [&](const IndexRange<size_t>& part) {
+    for (size_t i = part.first; i < part.last; ++i) {
+      write_block(*leaves[i], grid.background(), blocks[i]);
+      if (!all_finite(blocks[i].values)) good = false;
+    }
+  };
+  // Threads take address space, of which the helper may have little: a few of them, for many leaves.
+  constexpr size_t kManyLeaves = 4096;
+  constexpr int kThreads = 4;
+  if (leaves.size() < kManyLeaves)
+    write({0, leaves.size()});
+  else
+    tbb::task_arena(kThreads).execute([&] { parallel_parts(leaves.size(), size_t{256}, write); });
+  if (!good) check_finite(blocks, name);
 }
 
 std::vector<VdbTile> inner_tiles_of(const openvdb::FloatGrid& grid) {
@@ -193,7 +218,7 @@ void put_file(const StoredGrid& stored, const openvdb::GridBase::Ptr& grid, cons
   answer.put_span(std::span<const DoubleBlock>(filed_type(stored) == "double" ? doubles_of(grid) : std::vector<DoubleBlock>{}));
 }
 
-void put_grid(const StoredGrids& grids, size_t chosen, ByteWriter& answer) {
+openvdb::GridBase::Ptr put_grid(const StoredGrids& grids, size_t chosen, ByteWriter& answer) {
   const StoredGrid& stored = grids.list[chosen];
   check_kind(stored);
   const openvdb::GridBase::Ptr filed = grids.read(chosen);
@@ -210,6 +235,13 @@ void put_grid(const StoredGrids& grids, size_t chosen, ByteWriter& answer) {
   put_blocks(*grid, stored.shown, answer);
   answer.put_span(std::span<const VdbTile>(inner_tiles_of(*grid)));
   put_file(stored, filed, grids.metadata, answer);
+  return filed;
+}
+
+/// To take a large tree apart takes a while, and the process is about to end.
+void keep_to_the_end(openvdb::GridBase::Ptr grid) {
+  static auto* const kept = new std::vector<openvdb::GridBase::Ptr>;
+  kept->push_back(std::move(grid));
 }
 
 void put_list(const StoredGrids& grids, ByteWriter& answer) {
@@ -251,7 +283,7 @@ void put_vdb_list(const fs::path& file, ByteWriter& answer) {
 void put_vdb_grid(const fs::path& file, const std::string& name, ByteWriter& answer) {
   reading([&] {
     const StoredGrids grids = stored_in(file);
-    put_grid(grids, choose(grids.list, name), answer);
+    keep_to_the_end(put_grid(grids, choose(grids.list, name), answer));
   });
 }
 
@@ -263,7 +295,7 @@ void put_vdb_all(const fs::path& file, ByteWriter& answer) {
     answer.put(static_cast<std::uint8_t>(chosen.size() > 1 ? 1 : 0));
     if (chosen.size() > 1) return put_each(grids, chosen, answer);
     const size_t begun = answer.begin_part();
-    put_grid(grids, choose(grids.list, ""), answer);
+    keep_to_the_end(put_grid(grids, choose(grids.list, ""), answer));
     answer.end_part(begun);
   });
 }

@@ -1,5 +1,5 @@
 #pragma once
-// A mesh as bytes, for the pipe between the helper program and us.
+// A mesh as bytes, as the helper program sends it to us.
 
 #include "sdf/color.h"
 #include "sdf/guard.h"

@@ -51,7 +51,7 @@ bool is_picture_file(const std::filesystem::path& file);
 /// file, 20 s and a second for each 4 MB).
 PictureFile read_picture_file(const std::filesystem::path& file);
 
-/// What goes through the pipe. The reader trusts nothing: InputError for bytes that are no such answer; control characters in texts become
+/// What the helper sends. The reader trusts nothing: InputError for bytes that are no such answer; control characters in texts become
 /// question marks, because terminals act on them.
 void put_picture(ByteWriter& answer, const PictureFile& picture);
 PictureFile picture_from_answer(std::span<const std::byte> bytes, const std::filesystem::path& file);

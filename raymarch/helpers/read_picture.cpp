@@ -1,5 +1,5 @@
 // limn-read-picture FILE: reads a picture that nobody vouches for with OpenImageIO, every pixel of it, and sends what is in it through the
-// answer pipe (sdf/guard.h).
+// answer (sdf/guard.h).
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>

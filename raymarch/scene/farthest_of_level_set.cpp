@@ -1,13 +1,13 @@
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "raymarch/scene/farthest_points.h"
-#include "sdf/level_set_data.h"
+#include "sdf/leaf_window.h"
+#include "sdf/parallel.h"
 
 namespace limn {
 namespace {
-
-using Leaf = nanovdb::FloatGrid::TreeType::LeafNodeType;
 
 /// A leaf and a bound of how far its crossings reach.
 struct Candidate {
@@ -20,17 +20,28 @@ struct Farthest {
   glm::dvec3 point{0.0};  ///< Index coordinates.
 };
 
+/// Values at a leaf's nodes and at those behind them: x, y from 0 to 8, z from -1 to 8.
+using LeafValues = std::array<std::array<std::array<float, 10>, 9>, 9>;
+
 /// The crossings on the edges that begin at a leaf's nodes, by linear interpolation. `direction` is one of index coordinates.
-void look_into(const Leaf& leaf, const nanovdb::FloatGrid::AccessorType& accessor, const glm::dvec3& direction, Farthest& best) {
-  constexpr nanovdb::Coord::ValueType kSteps[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+void look_into(const NanoLeaf& leaf, const NanoAccessor& accessor, const glm::dvec3& direction, Farthest& best) {
+  constexpr int kSteps[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const nanovdb::Coord origin = leaf.origin();
-  for (std::uint32_t n = 0; n < 512; ++n) {
-    const nanovdb::Coord node = origin + Leaf::OffsetToLocalCoord(n);
-    const double here = static_cast<double>(leaf.getValue(n));
+  LeafValues values;
+  LeafWindow(accessor, origin).for_each_column(0, 8, [&](const LeafWindow::Column& column, int x, int y) {
+    column.load_row(x, y, values[static_cast<size_t>(x)][static_cast<size_t>(y)].data());
+  });
+  const auto value = [&](int x, int y, int z) {
+    return values[static_cast<size_t>(x)][static_cast<size_t>(y)][static_cast<size_t>(z) + 1];
+  };
+  for (int n = 0; n < 512; ++n) {
+    const int x = n >> 6, y = n >> 3 & 7, z = n & 7;
     for (const auto& step : kSteps) {
-      const double there = static_cast<double>(accessor.getValue(node.offsetBy(step[0], step[1], step[2])));
-      if ((here < 0.0) == (there < 0.0)) continue;
-      const glm::dvec3 point = glm::dvec3(node[0], node[1], node[2]) + here / (here - there) * glm::dvec3(step[0], step[1], step[2]);
+      const float at_here = value(x, y, z), at_there = value(x + step[0], y + step[1], z + step[2]);
+      if ((at_here < 0.0f) == (at_there < 0.0f)) continue;
+      const double here = static_cast<double>(at_here), there = static_cast<double>(at_there);
+      const glm::dvec3 point =
+          glm::dvec3(origin[0] + x, origin[1] + y, origin[2] + z) + here / (here - there) * glm::dvec3(step[0], step[1], step[2]);
       const double along = glm::dot(point, direction);
       if (along > best.along) best = {along, point};
     }
@@ -39,7 +50,7 @@ void look_into(const Leaf& leaf, const nanovdb::FloatGrid::AccessorType& accesso
 
 /// Leaves in the order of their bounds, until none that is left can reach farther.
 Farthest farthest(const nanovdb::FloatGrid& grid, const glm::dvec3& direction) {
-  const Leaf* leaves = grid.tree().getFirstNode<0>();
+  const NanoLeaf* leaves = grid.tree().getFirstNode<0>();
   std::vector<Candidate> order(grid.tree().nodeCount(0));
   const double half = 4.0 * (std::abs(direction.x) + std::abs(direction.y) + std::abs(direction.z));
   for (std::uint32_t i = 0; i < order.size(); ++i) {
@@ -63,11 +74,13 @@ Farthest farthest(const nanovdb::FloatGrid& grid, const glm::dvec3& direction) {
 FarthestPoints farthest_of_level_set(const LevelSet& level_set, const Affine& world_from_object) {
   return [level_set, world_from_object](std::span<const glm::dvec3> directions) {
     const Affine world_from_index = compose(world_from_object, level_set.info().world_from_index);
+    std::vector<Farthest> best(directions.size());
+    parallel_each(directions.size(),
+                  [&](size_t i) { best[i] = farthest(*level_set.data().grid, glm::transpose(world_from_index.linear) * directions[i]); });
     std::vector<glm::dvec3> points;
-    for (const glm::dvec3& direction : directions) {
-      const Farthest best = farthest(*level_set.data().grid, glm::transpose(world_from_index.linear) * direction);
-      if (best.along == -std::numeric_limits<double>::infinity()) return std::vector<glm::dvec3>{};
-      points.push_back(world_from_index.point(best.point));
+    for (const Farthest& one : best) {
+      if (one.along == -std::numeric_limits<double>::infinity()) return std::vector<glm::dvec3>{};
+      points.push_back(world_from_index.point(one.point));
     }
     return points;
   };

@@ -34,7 +34,7 @@ struct SvgFile {
 /// Throws InputError naming `file`: not there, no SVG, damaged, more than the limits allow.
 SvgFile read_svg_file(const std::filesystem::path& file);
 
-/// What goes through the pipe. The reader trusts nothing: InputError for bytes that are no such answer.
+/// What the helper sends. The reader trusts nothing: InputError for bytes that are no such answer.
 void put_svg(ByteWriter& answer, const SvgFile& svg);
 SvgFile svg_from_answer(std::span<const std::byte> bytes, const std::filesystem::path& file);
 

@@ -2,14 +2,17 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <fstream>
+#include <random>
 
 #include "sdf/error.h"
 #include "sdf/output_file.h"
+#include "tests/random_seed.h"
 #include "tests/temporary_folder.h"
 
 namespace limn {
@@ -52,12 +55,12 @@ class Guard : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(Guard, TheAnswerIsWhatTheHelperWroteToItsPipeAndNothingElse) {
+TEST_F(Guard, TheAnswerIsWhatTheHelperWroteToItAndNothingElse) {
   helper("echo noise; echo noise >&2; printf 'a%s%s' \"$1\" \"$2\" >&3");
   EXPECT_EQ(answer({}, {"b c", "$HOME"}), "ab c$HOME");
 }
 
-TEST_F(Guard, AnAnswerLargerThanAPipeComesWhole) {
+TEST_F(Guard, ALongAnswerComesWhole) {
   helper("head -c 3000000 /dev/zero >&3");
   EXPECT_EQ(answer(), std::string(3000000, '\0'));
 }
@@ -83,7 +86,7 @@ TEST_F(Guard, CrashTimeMemorySizeAndExitCodeAreToldApart) {
 }
 
 TEST_F(Guard, NothingThatTheHelperStartedOutlivesIt) {
-  // The helper's own child holds the pipe open and would sleep for long after the helper is gone.
+  // The helper's own child holds the answer open and would sleep for long after the helper is gone.
   helper("sleep 600 & echo $! > '" + (folder_.path() / "pid").string() + "'; printf done >&3");
   EXPECT_EQ(answer(), "done");
   const int pid = std::stoi(read_text(folder_.path() / "pid"));
@@ -94,6 +97,21 @@ TEST_F(Guard, NothingThatTheHelperStartedOutlivesIt) {
   }
   const std::string state = read_text("/proc/" + std::to_string(pid) + "/stat");
   EXPECT_TRUE(state.empty() || state.find(") Z ") != std::string::npos) << state;
+}
+
+TEST_F(Guard, WhatOutlivesTheHelperCannotChangeItsAnswer) {
+  // A session of its own: not in the helper's group, and not ended with it.
+  write_text(folder_.path() / "rest", "cd '" + folder_.path().string() + "'\n: > started\nuntil [ -e now ]; do sleep 0.01; done\n" +
+                                          "printf more >&3\necho $? > part\nmv part tried\n");
+  helper("cd '" + folder_.path().string() + "'; setsid sh ./rest & until [ -e '" + (folder_.path() / "started").string() +
+         "' ]; do sleep 0.01; done; printf done >&3");
+  const MappedBytes bytes = run_guarded("helper", {}, "model.abc");
+  const auto text = [&] { return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()); };
+  EXPECT_EQ(text(), "done");
+  write_text(folder_.path() / "now", "");
+  for (int i = 0; i < 3000 && !fs::exists(folder_.path() / "tried"); ++i) ::usleep(10'000);
+  EXPECT_NE(std::atoi(read_text(folder_.path() / "tried").c_str()), 0) << "it could still write";
+  EXPECT_EQ(text(), "done");
 }
 
 TEST_F(Guard, NoZombieIsLeft) {
@@ -145,6 +163,139 @@ TEST(GuardBytes, WhatIsWrittenIsReadAndAnAnswerCutAnywhereIsRefused) {
   ByteWriter huge;
   huge.put(std::uint64_t{1} << 61);
   EXPECT_THROW(ByteReader(huge.bytes(), "model.abc").get_vector<double>(), InputError);
+}
+
+/// A file in memory, as helpers have it.
+class MemoryFile {
+ public:
+  MemoryFile() : handle_(::memfd_create("limn-test", MFD_CLOEXEC)) {}
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  ~MemoryFile() { ::close(handle_); }
+  int handle() const { return handle_; }
+
+ private:
+  int handle_;
+};
+
+struct Triple {
+  std::int32_t a, b, c;
+  bool operator==(const Triple&) const = default;
+};
+
+/// Texts, numbers, elements in place and parts within parts, some of them taken back again: as much as a few pages or many.
+void put_many(ByteWriter& writer, std::mt19937& random, int depth) {
+  for (int k = 0; k < 12; ++k) {
+    const std::size_t count = random() % (k % 4 == 0 ? 20'000 : 20);
+    const std::size_t before = writer.size();
+    switch (random() % 4) {
+      case 0:
+        writer.put_text(std::string(count, static_cast<char>('a' + k)));
+        break;
+      case 1:
+        writer.put(static_cast<std::uint8_t>(count));
+        break;
+      case 2: {
+        const std::span<Triple> room = writer.put_room<Triple>(count);
+        for (std::size_t i = 0; i < count; ++i) room[i] = {k, static_cast<std::int32_t>(i), static_cast<std::int32_t>(count)};
+        break;
+      }
+      default: {
+        if (depth == 0) break;
+        const std::size_t begun = writer.begin_part();
+        put_many(writer, random, depth - 1);
+        writer.end_part(begun);
+      }
+    }
+    if (random() % 5 == 0) {
+      writer.shrink(before);
+      writer.put_text("taken back");
+    }
+  }
+}
+
+void read_many(ByteReader& reader, std::mt19937& random, int depth) {
+  // The same draws tell what was put; what was taken back is drawn, too, but not there.
+  for (int k = 0; k < 12; ++k) {
+    const std::size_t count = random() % (k % 4 == 0 ? 20'000 : 20);
+    const auto what = random() % 4;
+    const bool nested = what == 3 && depth > 0;
+    std::mt19937 within = random;
+    if (nested) {
+      ByteWriter skipped;
+      put_many(skipped, random, depth - 1);
+    }
+    if (random() % 5 == 0) {
+      ASSERT_EQ(reader.get_text(), "taken back");
+    } else if (what == 0) {
+      ASSERT_EQ(reader.get_text(), std::string(count, static_cast<char>('a' + k)));
+    } else if (what == 1) {
+      ASSERT_EQ(reader.get<std::uint8_t>(), static_cast<std::uint8_t>(count));
+    } else if (what == 2) {
+      const std::span<const Triple> found = reader.get_in_place<Triple>();
+      ASSERT_EQ(found.size(), count);
+      for (std::size_t i = 0; i < count; ++i)
+        ASSERT_EQ(found[i], (Triple{k, static_cast<std::int32_t>(i), static_cast<std::int32_t>(count)}));
+    } else if (nested) {
+      ByteReader part(reader.get_bytes(), "model.abc");
+      read_many(part, within, depth - 1);
+      ASSERT_TRUE(part.done());
+    }
+  }
+}
+
+TEST(GuardBytes, WhatIsPutInMemoryAndIntoAFilesPagesIsFoundThere) {
+  const unsigned seed = random_seed();
+  for (unsigned round = 0; round < 20; ++round) {
+    const MemoryFile file;
+    ByteWriter in_memory, in_file(file.handle());
+    for (ByteWriter* const writer : {&in_memory, &in_file}) {
+      std::mt19937 random(seed + round);
+      put_many(*writer, random, 2);
+    }
+    ASSERT_TRUE(in_file.finish());
+    const MappedBytes mapped(file.handle());
+    ASSERT_EQ(mapped.size(), in_memory.size());
+    for (const std::span<const std::byte> bytes : {in_memory.bytes(), std::span<const std::byte>(mapped)}) {
+      std::mt19937 random(seed + round);
+      ByteReader reader(bytes, "model.abc");
+      read_many(reader, random, 2);
+      ASSERT_TRUE(reader.done()) << "round " << round;
+    }
+  }
+}
+
+TEST(GuardBytes, ElementsInPlaceThatBreakOffAreRefused) {
+  ByteWriter writer;
+  writer.put_text("x");
+  const std::span<double> room = writer.put_room<double>(3);
+  std::fill(room.begin(), room.end(), 2.5);
+  const std::size_t begun = writer.begin_part();
+  writer.put_text("within");
+  writer.end_part(begun);
+  const auto read = [](std::span<const std::byte> bytes) {
+    ByteReader reader(bytes, "model.abc");
+    reader.get_text();
+    const std::span<const double> found = reader.get_in_place<double>();
+    const std::string within = ByteReader(reader.get_bytes(), "model.abc").get_text();
+    return within == "within" && found.size() == 3 && found[2] == 2.5 && reader.done();
+  };
+  EXPECT_TRUE(read(writer.bytes()));
+  for (std::size_t size = 0; size < writer.size(); ++size) EXPECT_THROW(read(writer.bytes().first(size)), InputError) << size;
+}
+
+TEST(GuardBytes, AFileThatCannotBeMappedIsWrittenToInTheEnd) {
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  ByteWriter writer(ends[1]);
+  writer.put_text("through a pipe");
+  EXPECT_TRUE(writer.finish());
+  ::close(ends[1]);
+  std::vector<std::byte> found(100);
+  const ssize_t count = ::read(ends[0], found.data(), found.size());
+  ::close(ends[0]);
+  ASSERT_EQ(count, static_cast<ssize_t>(writer.size()));
+  EXPECT_EQ(ByteReader(std::span(found).first(writer.size()), "model.abc").get_text(), "through a pipe");
 }
 
 TEST(Readable, MissingFoldersEmptyAndSpecialFilesAreRefusedByName) {

@@ -1,5 +1,6 @@
 #include "sdf/answer.h"
 
+#include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -31,15 +32,16 @@ bool write_all(int file, std::span<const std::byte> bytes) {
   return true;
 }
 
+/// One byte less than the limit: what is as long as that was cut off (sdf/guard.cpp).
 std::size_t longest_file() {
   rlimit longest{};
-  return ::getrlimit(RLIMIT_FSIZE, &longest) == 0 && longest.rlim_cur != RLIM_INFINITY ? static_cast<std::size_t>(longest.rlim_cur)
-                                                                                       : SIZE_MAX;
+  if (::getrlimit(RLIMIT_FSIZE, &longest) != 0 || longest.rlim_cur == RLIM_INFINITY || longest.rlim_cur == 0) return SIZE_MAX;
+  return static_cast<std::size_t>(longest.rlim_cur) - 1;
 }
 
 bool has_pages(int file) {
   struct stat status {};
-  return ::fstat(file, &status) == 0 && S_ISREG(status.st_mode);
+  return ::fstat(file, &status) == 0 && S_ISREG(status.st_mode) && (::fcntl(file, F_GETFL) & O_ACCMODE) == O_RDWR;
 }
 
 }  // namespace
@@ -81,8 +83,7 @@ void ByteWriter::release() {
 }
 
 void ByteWriter::grow(std::size_t least) {
-  // As much again as there is, but no more than a file may have: growing beyond that would end the process. Where that fails, what has to
-  // be.
+  // As much again as there is, but no longer than a file may be: growing beyond that would end the process. Else what has to be.
   const std::size_t more = std::min(std::max(2 * capacity_, kLeastRoom), mapped_ ? longest_file() : SIZE_MAX);
   for (const std::size_t wanted : {std::max(least, more), least})
     if (resize(wanted)) return;

@@ -1,5 +1,5 @@
-// limn-read-picture FILE: reads a picture that nobody vouches for with OpenImageIO, every pixel of it, and sends what is in it through the
-// answer (sdf/guard.h).
+// limn-read-picture FILE: reads a picture that nobody vouches for with OpenImageIO, every pixel of it, and answers with what is in it
+// (sdf/guard.h).
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// limn-read-mesh FILE MAX_ELEMENTS: reads a .gltf or .glb that nobody vouches for with assimp, and sends it as a flat
-// mesh as its answer (sdf/guard.h).
+// limn-read-mesh FILE MAX_ELEMENTS: reads a .gltf or .glb that nobody vouches for with assimp, and answers with a
+// flat mesh (sdf/guard.h).
 #include <assimp/BaseImporter.h>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/importerdesc.h>

@@ -1,5 +1,6 @@
 // What limn-read-vdb sends, had a file taken that helper over: the list of grids, a grid, all of them.
 #include <cmath>
+#include <vector>
 
 #include "sdf/level_set_data.h"
 #include "sdf/read_vdb.h"
@@ -23,7 +24,10 @@ void use_grid(std::span<const std::byte> bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   // The first byte says which of the three was asked for.
-  const std::span bytes(reinterpret_cast<const std::byte*>(data) + 1, size - 1);
+  // In memory of their own: answers begin at a page, and their elements lie where such may.
+  const auto* const first = reinterpret_cast<const std::byte*>(data) + 1;
+  const std::vector<std::byte> own(first, first + size - 1);
+  const std::span<const std::byte> bytes(own);
   limn::fuzz::only_refused([&] {
     if (data[0] % 4 == 2) {
       limn::vdb_file_from_answer(bytes, "fuzz.vdb");

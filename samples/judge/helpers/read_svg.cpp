@@ -1,5 +1,5 @@
-// limn-read-svg FILE: reads an SVG that nobody vouches for with pugixml, resolves its styles and transforms, and sends what it paints as
-// polylines as its answer (sdf/guard.h).
+// limn-read-svg FILE: reads an SVG that nobody vouches for with pugixml, resolves its styles and transforms, and answers with what it
+// paints as polylines (sdf/guard.h).
 
 #include <algorithm>
 #include <cmath>

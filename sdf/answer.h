@@ -15,15 +15,16 @@ namespace limn {
 /// The whole of a file, as it was when it was mapped; the owner of its pages.
 class MappedBytes {
  public:
-  MappedBytes() = default;
-  explicit MappedBytes(int file);  ///< A file descriptor, not kept. Throws MachineError where it cannot be mapped.
-  MappedBytes(MappedBytes&& other) noexcept;
-  MappedBytes& operator=(MappedBytes&& other) noexcept;
-  ~MappedBytes();
+  MappedBytes() = default;                               ///< Nothing.
+  explicit MappedBytes(int file);                        ///< A file descriptor, not kept. Throws MachineError where it cannot be mapped.
+  MappedBytes(MappedBytes&& other) noexcept;             ///< What `other` has, which then has nothing.
+  MappedBytes& operator=(MappedBytes&& other) noexcept;  ///< As two that change places.
+  ~MappedBytes();                                        ///< Gives the pages back.
 
-  const std::byte* data() const { return data_; }
-  std::size_t size() const { return size_; }
-  operator std::span<const std::byte>() const { return {data_, size_}; }  // NOLINT
+  const std::byte* data() const { return data_; }  ///< The first byte; at a page's beginning. Null of nothing.
+  std::size_t size() const { return size_; }       ///< Bytes.
+  /// All bytes.
+  operator std::span<const std::byte>() const { return {data_, size_}; }  // NOLINT(google-explicit-constructor): bytes are what it is
 
  private:
   std::byte* data_ = nullptr;
@@ -40,7 +41,7 @@ class ByteWriter {
   explicit ByteWriter(int file);  ///< In the pages of a file from its beginning, or, where it has none, written to it by finish().
   ByteWriter(const ByteWriter&) = delete;
   ByteWriter& operator=(const ByteWriter&) = delete;
-  ~ByteWriter();
+  ~ByteWriter();  ///< Of a file: does not finish it.
 
   /// The bytes of a trivially copyable value.
   template <class T>
@@ -65,7 +66,7 @@ class ByteWriter {
   }
   /// Begins a part that ByteReader::get_bytes takes: itself an answer. Returns what end_part wants.
   std::size_t begin_part();
-  void end_part(std::size_t begun);
+  void end_part(std::size_t begun);  ///< `begun` is what begin_part returned.
   /// Room for so many bytes more, which put() then finds: growing takes up to twice as much. Throws std::bad_alloc.
   void reserve(std::size_t more);
   /// Takes back all but the first `size` bytes.

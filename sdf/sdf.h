@@ -6,6 +6,7 @@
 /// `_deg`; transforms are named target_from_source; fields and level sets are negative inside. Functions throw InputError for what a caller
 /// can cause and MachineError where the machine fails.
 
+#include "sdf/answer.h"
 #include "sdf/camera.h"
 #include "sdf/color.h"
 #include "sdf/descriptor.h"

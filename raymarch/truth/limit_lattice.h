@@ -62,11 +62,11 @@ inline bool on_rim(const LimitPatch& patch, int steps, int column, int row) {
   return column == 0 || row == 0 || (patch.triangle ? column + row == steps : column == steps || row == steps);
 }
 /// How many samples lie on a patch's sides.
-inline size_t rim_size(const LimitPatch& patch, int steps) { return static_cast<size_t>((patch.triangle ? 3 : 4) * steps); }
+inline size_t rim_size(const LimitPatch& patch, int steps) { return (patch.triangle ? size_t{3} : size_t{4}) * static_cast<size_t>(steps); }
 /// Which of them one is: rows of v from 0, each by u.
 inline size_t rim_index(const LimitPatch& patch, int steps, int column, int row) {
   if (row == 0) return static_cast<size_t>(column);
-  const auto before = static_cast<size_t>(steps + 1 + 2 * (row - 1));
+  const size_t before = static_cast<size_t>(steps) + 1 + 2 * (static_cast<size_t>(row) - 1);
   if (!patch.triangle && row == steps) return before + static_cast<size_t>(column);
   return before + (column > 0 ? 1 : 0);
 }

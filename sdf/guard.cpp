@@ -48,6 +48,10 @@ struct AnswerFile {
   AnswerFile(const AnswerFile&) = delete;
   AnswerFile& operator=(const AnswerFile&) = delete;
   ~AnswerFile() { ::close(handle); }
+  std::int64_t size() const {
+    struct stat status {};
+    return ::fstat(handle, &status) == 0 ? static_cast<std::int64_t>(status.st_size) : 0;
+  }
   /// Nobody writes to it any more. False where some process still can: then nothing that is read of it could be relied on.
   bool seal() const {
     constexpr int kAll = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE | F_SEAL_SEAL, kTries = 100;
@@ -119,7 +123,7 @@ void limit_from_outside(pid_t child, const GuardLimits& limits) {
   const rlimit cpu{seconds, seconds + 1}, no_core{0, 0};
   ::prlimit(child, RLIMIT_CPU, &cpu, nullptr);
   ::prlimit(child, RLIMIT_CORE, &no_core, nullptr);
-  // Its answer is the only file that it writes.
+  // Its answer is the only file that it writes. What it started before has no such limit: wait_for() looks at the answer, too.
   const auto longest = static_cast<rlim_t>(limits.answer_bytes + 1);
   const rlimit answer{longest, longest};
   ::prlimit(child, RLIMIT_FSIZE, &answer, nullptr);
@@ -129,15 +133,18 @@ void limit_from_outside(pid_t child, const GuardLimits& limits) {
   ::prlimit(child, RLIMIT_AS, &memory, nullptr);
 }
 
-/// No helper gets more than what our own process may allocate, which it inherits anyway: so its limit is the one that messages name.
+/// No helper gets more than what our own process may allocate, which it inherits anyway: so its limit is the one that messages name. Its
+/// answer, which is memory of nobody, is no larger either.
 GuardLimits within_our_own(GuardLimits limits) {
   rlimit data{};
-  if (::getrlimit(RLIMIT_DATA, &data) == 0 && data.rlim_cur != RLIM_INFINITY)
-    limits.memory_bytes = std::min(limits.memory_bytes, static_cast<std::int64_t>(data.rlim_cur));
+  if (::getrlimit(RLIMIT_DATA, &data) != 0 || data.rlim_cur == RLIM_INFINITY) return limits;
+  const auto own = static_cast<std::int64_t>(data.rlim_cur);
+  limits.memory_bytes = std::min(limits.memory_bytes, own);
+  limits.answer_bytes = std::min(limits.answer_bytes, own);
   return limits;
 }
 
-enum class Ending { ended, out_of_time };
+enum class Ending { ended, out_of_time, answer_too_long };
 
 bool has_ended(pid_t child) {
   siginfo_t info{};
@@ -156,20 +163,24 @@ class EndOfProcess {
   /// At most so long; a millisecond where its end makes no event.
   void wait(std::int64_t most_ms) const {
     pollfd end{handle_, POLLIN, 0};
-    ::poll(&end, 1, static_cast<int>(std::min<std::int64_t>(most_ms, handle_ >= 0 ? 1000 : 1)));
+    ::poll(&end, 1, static_cast<int>(handle_ >= 0 ? most_ms : std::min<std::int64_t>(most_ms, 1)));
   }
 
  private:
   int handle_;
 };
 
-Ending wait_for(pid_t child, const GuardLimits& limits) {
+/// The answer takes memory while it grows: it is never looked away from for long.
+constexpr std::int64_t kLook_ms = 10;
+
+Ending wait_for(pid_t child, const AnswerFile& answer, const GuardLimits& limits) {
   const Clock::time_point deadline = Clock::now() + limits.time;
   const EndOfProcess end(child);
   while (!has_ended(child)) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
     if (left <= 0) return Ending::out_of_time;
-    end.wait(left);
+    if (answer.size() > limits.answer_bytes) return Ending::answer_too_long;
+    end.wait(std::min<std::int64_t>(left, kLook_ms));
   }
   return Ending::ended;
 }
@@ -190,14 +201,20 @@ std::string one_line_of(std::span<const std::byte> answer) {
   return text.empty() ? "cannot be read" : text;
 }
 
+/// The file takes more than it may: where a damaged one may take more than that, the limit is to blame as much as the file.
+[[noreturn]] void refuse_size(const fs::path& file, const std::string& problem, bool allowed_less) {
+  if (allowed_less) throw SizeError({.file = file.string(), .field = {}, .value = {}, .problem = problem, .expected = {}});
+  refuse(file, problem + "; it is damaged or far too large", "a smaller or an undamaged file");
+}
+
 void judge(Ending ending, int status, std::span<const std::byte> answer, const fs::path& file, const GuardLimits& limits,
-           std::int64_t allowed_bytes) {
+           const GuardLimits& asked) {
   if (ending == Ending::out_of_time)
     refuse(file, "reading it took longer than " + std::to_string(limits.time.count() / 1000) + " s; it is damaged or far too large",
            "an undamaged file");
-  const bool cut = WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ;
+  const bool cut = ending == Ending::answer_too_long || (WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ);
   if (cut || static_cast<std::int64_t>(answer.size()) > limits.answer_bytes)
-    refuse(file, "what is in it takes more than " + megabytes(limits.answer_bytes), "a smaller or an undamaged file");
+    refuse_size(file, "what is in it takes more than " + megabytes(limits.answer_bytes), limits.answer_bytes < asked.answer_bytes);
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
     refuse(file, "reading it used up its processor time; it is damaged or far too large", "an undamaged file");
   if (WIFSIGNALED(status))
@@ -206,11 +223,9 @@ void judge(Ending ending, int status, std::span<const std::byte> answer, const f
   if (code == kExitAnswer) return;
   if (code == kExitRefusal)
     throw InputError({.file = file.string(), .field = {}, .value = {}, .problem = one_line_of(answer), .expected = {}});
-  const std::string needs = "reading it needs more than " + megabytes(limits.memory_bytes) + " of memory";
-  // Less than a damaged file is allowed: the limit is to blame as much as the file.
-  if (code == kExitMemory && limits.memory_bytes < allowed_bytes)
-    throw SizeError({.file = file.string(), .field = {}, .value = {}, .problem = needs, .expected = {}});
-  if (code == kExitMemory) refuse(file, needs + "; it is damaged or far too large", "a smaller or an undamaged file");
+  if (code == kExitMemory)
+    refuse_size(file, "reading it needs more than " + megabytes(limits.memory_bytes) + " of memory",
+                limits.memory_bytes < asked.memory_bytes);
   refuse(file, "the reader gave up on it (exit code " + std::to_string(code) + "); it is damaged", "an undamaged file");
 }
 
@@ -245,7 +260,7 @@ MappedBytes run_guarded(const std::string& name, std::span<const std::string> ar
   limit_from_outside(child, limits);
   Ending ending;
   try {
-    ending = wait_for(child, limits);
+    ending = wait_for(child, answer_file, limits);
   } catch (...) {
     reap(child);
     throw;
@@ -253,7 +268,7 @@ MappedBytes run_guarded(const std::string& name, std::span<const std::string> ar
   const int status = reap(child);
   if (!answer_file.seal()) refuse(file, "the reader left something behind that can still change its answer", "an undamaged file");
   MappedBytes answer(answer_file.handle);
-  judge(ending, status, answer, file, limits, asked.memory_bytes);
+  judge(ending, status, answer, file, limits, asked);
   return answer;
 }
 

@@ -85,6 +85,14 @@ TEST_F(Guard, CrashTimeMemorySizeAndExitCodeAreToldApart) {
   EXPECT_NE(refusal().find("processor time"), std::string::npos) << refusal();
 }
 
+TEST_F(Guard, AnAnswerThatGrowsWithoutEndIsCutOffWhoeverWritesIt) {
+  // What the helper starts at once may have no limit of its own yet; it goes on while the helper waits.
+  for (int k = 0; k < 20; ++k) {
+    helper("head -c 400000000 /dev/zero >&3 & sleep 600");
+    EXPECT_NE(refusal({.answer_bytes = 1 << 20}).find("more than 1 MB"), std::string::npos);
+  }
+}
+
 TEST_F(Guard, NothingThatTheHelperStartedOutlivesIt) {
   // The helper's own child holds the answer open and would sleep for long after the helper is gone.
   helper("sleep 600 & echo $! > '" + (folder_.path() / "pid").string() + "'; printf done >&3");

@@ -32,6 +32,14 @@ bool write_all(int file, std::span<const std::byte> bytes) {
   return true;
 }
 
+[[noreturn]] void throw_unreadable() { throw MachineError(std::string("cannot read a helper's answer: ") + std::strerror(errno)); }
+
+std::size_t size_of(int file) {
+  struct stat status {};
+  if (::fstat(file, &status) != 0) throw_unreadable();
+  return static_cast<std::size_t>(status.st_size);
+}
+
 /// One byte less than the limit: what is as long as that was cut off (sdf/guard.cpp).
 std::size_t longest_file() {
   rlimit longest{};
@@ -47,14 +55,31 @@ bool has_pages(int file) {
 }  // namespace
 
 MappedBytes::MappedBytes(int file) {
-  struct stat status {};
-  if (::fstat(file, &status) != 0) throw MachineError(std::string("cannot read a helper's answer: ") + std::strerror(errno));
-  if (status.st_size == 0) return;
-  const auto size = static_cast<std::size_t>(status.st_size);
+  const std::size_t size = size_of(file);
+  if (size == 0) return;
   void* const pages = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file, 0);
-  if (pages == MAP_FAILED) throw MachineError(std::string("cannot read a helper's answer: ") + std::strerror(errno));
+  if (pages == MAP_FAILED) throw_unreadable();
   data_ = static_cast<std::byte*>(pages);
   size_ = size;
+}
+
+MappedBytes MappedBytes::copied(int file) {
+  MappedBytes result;
+  const std::size_t size = size_of(file);
+  if (size == 0) return result;
+  void* const pages = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (pages == MAP_FAILED) throw_unreadable();
+  result.data_ = static_cast<std::byte*>(pages);
+  result.size_ = size;
+  // Where the file has become shorter, the rest stays 0.
+  for (std::size_t at = 0; at < size;) {
+    const ssize_t count = ::pread(file, result.data_ + at, size - at, static_cast<off_t>(at));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) throw_unreadable();
+    if (count == 0) break;
+    at += static_cast<std::size_t>(count);
+  }
+  return result;
 }
 
 MappedBytes::MappedBytes(MappedBytes&& other) noexcept : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}

@@ -17,6 +17,7 @@ class MappedBytes {
  public:
   MappedBytes() = default;                               ///< Nothing.
   explicit MappedBytes(int file);                        ///< A file descriptor, not kept. Throws MachineError where it cannot be mapped.
+  static MappedBytes copied(int file);                   ///< The same in memory of its own, which later writing cannot change.
   MappedBytes(MappedBytes&& other) noexcept;             ///< What `other` has, which then has nothing.
   MappedBytes& operator=(MappedBytes&& other) noexcept;  ///< As two that change places.
   ~MappedBytes();                                        ///< Gives the pages back.

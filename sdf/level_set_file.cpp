@@ -68,15 +68,18 @@ bool well_placed(const glm::ivec3& origin, int multiple) {
 }
 
 void check_blocks(std::span<const LevelSetBlock> blocks, std::span<const VdbTile> tiles, const fs::path& file) {
-  std::vector<std::array<int, 3>> origins;
-  origins.reserve(blocks.size());
-  for (const LevelSetBlock& block : blocks) origins.push_back({block.origin.x, block.origin.y, block.origin.z});
+  std::vector<std::array<int, 3>> origins(blocks.size());
+  // All threads: whoever looks first at the answer's pages gets them from the system.
   const auto good_part = [&](const IndexRange<size_t>& part, bool so_far) {
-    for (size_t i = part.first; i < part.last; ++i) so_far = so_far && well_placed(blocks[i].origin, 8) && all_finite(blocks[i].values);
+    for (size_t i = part.first; i < part.last; ++i) {
+      const glm::ivec3& origin = blocks[i].origin;
+      origins[i] = {origin.x, origin.y, origin.z};
+      so_far = so_far && well_placed(origin, 8) && all_finite(blocks[i].values);
+    }
     return so_far;
   };
   bool good = parallel_reduce(blocks.size(), size_t{256}, true, good_part, std::logical_and<>());
-  std::sort(origins.begin(), origins.end());
+  parallel_sort(origins.begin(), origins.end(), std::less<>());
   good = good && std::adjacent_find(origins.begin(), origins.end()) == origins.end();
   for (const VdbTile& tile : tiles) good = good && tile.level >= 1 && tile.level <= 3 && well_placed(tile.origin, 8);
   if (!good) refuse(file, "its tree of voxels is not in order", "an undamaged file");

@@ -44,11 +44,16 @@ bool has_tiles(const nanovdb::FloatGrid& grid, std::span<const VdbTile> tiles) {
   TileCounts listed{};
   for (const VdbTile& tile : tiles) ++listed[static_cast<size_t>(tile.level)];
   if (listed != tiles_inside_of(grid.tree())) return false;
-  const Accessor accessor = grid.getAccessor();
-  return std::all_of(tiles.begin(), tiles.end(), [&](const VdbTile& tile) {
-    const nanovdb::Coord at(tile.origin.x, tile.origin.y, tile.origin.z);
-    return accessor.getNodeInfo(at).mLevel == static_cast<std::uint32_t>(tile.level) && accessor.getValue(at) < 0.0f;
-  });
+  const auto are_there = [&](const IndexRange<size_t>& part, bool so_far) {
+    const Accessor accessor = grid.getAccessor();
+    return so_far && std::all_of(tiles.begin() + static_cast<std::ptrdiff_t>(part.first),
+                                 tiles.begin() + static_cast<std::ptrdiff_t>(part.last), [&](const VdbTile& tile) {
+                                   const nanovdb::Coord at(tile.origin.x, tile.origin.y, tile.origin.z);
+                                   return accessor.getNodeInfo(at).mLevel == static_cast<std::uint32_t>(tile.level) &&
+                                          accessor.getValue(at) < 0.0f;
+                                 });
+  };
+  return parallel_reduce(tiles.size(), size_t{1024}, true, are_there, std::logical_and<>());
 }
 
 bool has_values(const nanovdb::FloatGrid& grid, std::span<const LevelSetBlock> blocks) {
@@ -68,7 +73,11 @@ bool has_values(const nanovdb::FloatGrid& grid, std::span<const LevelSetBlock> b
 
 std::optional<nanovdb::GridHandle<nanovdb::HostBuffer>> nano_grid_as_filed(std::span<const LevelSetBlock> blocks,
                                                                            std::span<const VdbTile> tiles, float background) {
-  if (blocks.empty() || !std::all_of(blocks.begin(), blocks.end(), has_active_node)) return std::nullopt;
+  const auto are_active = [&](const IndexRange<size_t>& part, bool so_far) {
+    for (size_t i = part.first; i < part.last; ++i) so_far = so_far && has_active_node(blocks[i]);
+    return so_far;
+  };
+  if (blocks.empty() || !parallel_reduce(blocks.size(), size_t{256}, true, are_active, std::logical_and<>())) return std::nullopt;
   nanovdb::GridHandle<nanovdb::HostBuffer> handle = nano_grid(blocks, background);
   const nanovdb::FloatGrid& grid = *handle.grid<float>();
   if (!has_tiles(grid, tiles) || !has_values(grid, blocks)) return std::nullopt;

@@ -96,15 +96,11 @@ MappedBytes::~MappedBytes() {
 
 ByteWriter::ByteWriter(int file) : file_(file), mapped_(has_pages(file)) {}
 
-ByteWriter::~ByteWriter() { release(); }
-
-void ByteWriter::release() {
+ByteWriter::~ByteWriter() {
   if (data_ != nullptr && mapped_)
     ::munmap(data_, capacity_);
   else
     std::free(data_);
-  data_ = nullptr;
-  capacity_ = 0;
 }
 
 void ByteWriter::grow(std::size_t least) {

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace limn {
@@ -87,7 +88,6 @@ class ByteWriter {
   void align();
   void grow(std::size_t least);
   bool resize(std::size_t capacity);
-  void release();
 
   int file_ = -1;
   bool mapped_ = false;

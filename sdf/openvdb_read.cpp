@@ -120,7 +120,7 @@ void check_finite(std::span<const LevelSetBlock> blocks, const std::string& name
 }
 
 /// Where a band was cut, leaves without a distance may still have an inside and an outside.
-bool has_both_signs(const openvdb::FloatTree::LeafNodeType& leaf) {
+bool has_both_signs(const Leaf& leaf) {
   const bool inside = leaf.getFirstValue() < 0.0f;
   for (openvdb::Index n = 1; n < 512; ++n)
     if ((leaf.getValue(n) < 0.0f) != inside) return true;

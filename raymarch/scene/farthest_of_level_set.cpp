@@ -1,9 +1,8 @@
 #include <algorithm>
-#include <array>
 #include <limits>
 
 #include "raymarch/scene/farthest_points.h"
-#include "sdf/leaf_window.h"
+#include "sdf/level_set_band.h"
 #include "sdf/parallel.h"
 
 namespace limn {
@@ -20,19 +19,14 @@ struct Farthest {
   glm::dvec3 point{0.0};  ///< Index coordinates.
 };
 
-/// Values at a leaf's nodes and at those behind them: x, y from 0 to 8, z from -1 to 8.
-using LeafValues = std::array<std::array<std::array<float, 10>, 9>, 9>;
-
 /// The crossings on the edges that begin at a leaf's nodes, by linear interpolation. `direction` is one of index coordinates.
 void look_into(const NanoLeaf& leaf, const NanoAccessor& accessor, const glm::dvec3& direction, Farthest& best) {
   constexpr int kSteps[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const nanovdb::Coord origin = leaf.origin();
-  LeafValues values;
-  LeafWindow(accessor, origin).for_each_column(0, 8, [&](const LeafWindow::Column& column, int x, int y) {
-    column.load_row(x, y, values[static_cast<size_t>(x)][static_cast<size_t>(y)].data());
-  });
+  NodeWindow nodes;
+  load_nodes(LeafWindow(accessor, origin), nodes);
   const auto value = [&](int x, int y, int z) {
-    return values[static_cast<size_t>(x)][static_cast<size_t>(y)][static_cast<size_t>(z) + 1];
+    return nodes[static_cast<size_t>(x) + 1][static_cast<size_t>(y) + 1][static_cast<size_t>(z) + 1];
   };
   for (int n = 0; n < 512; ++n) {
     const int x = n >> 6, y = n >> 3 & 7, z = n & 7;

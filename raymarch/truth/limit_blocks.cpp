@@ -1,3 +1,5 @@
+// Balls and cones about stretches of a lattice, by which most of its triangles need not be looked at.
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>

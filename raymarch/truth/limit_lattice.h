@@ -22,7 +22,7 @@ struct LimitCorner {
   /// The same for all corners of one place that share a normal; index into LimitGrid::normals. On the way to the triangle's next corner,
   /// and to the one before: at the tip of a cone, as a sharp corner of smooth edges has, each way there has a normal of its own.
   std::uint32_t side = 0, side_back = 0;
-  std::uint16_t column = 0, row = 0, steps = 1;  ///< Of its patch's lattice. There are many corners: their places are kept small.
+  std::uint16_t column = 0, row = 0, steps = 1;  ///< Of its patch's lattice.
 
   glm::dvec2 uv() const { return glm::dvec2(column, row) / double(steps); }
 };
@@ -36,17 +36,18 @@ inline std::uint32_t side_towards(const LimitTriangle& triangle, int at, int oth
   return other == (at + 1) % 3 ? corner.side : corner.side_back;
 }
 
+/// Of a patch: its samples, `steps` + 1 along a side, and the triangles between them, row by row of cells.
 struct LimitLattice {
   /// What a sample is in the grid.
   struct Place {
     std::uint32_t node = 0, side = 0;
   };
-  std::uint32_t patch = 0;
-  LimitPatch shape{};
+  std::uint32_t patch = 0;  ///< Into PlacedLimitSurface::patches.
+  LimitPatch shape{};       ///< That patch.
   int steps = 1;
-  std::uint32_t first_triangle = 0;
-  std::vector<Place> rim{};     ///< Of samples on the patch's sides, by rows: see rim_index().
-  std::vector<Place> inside{};  ///< Of each row's first sample that is not on a side; those after it have the numbers that follow.
+  std::uint32_t first_triangle = 0;  ///< Of all triangles of the grid.
+  std::vector<Place> rim{};          ///< Of samples on the patch's sides, by rows: see rim_index().
+  std::vector<Place> inside{};       ///< Of each row's first sample that is not on a side; those after it have the numbers that follow.
   std::vector<LimitTriangle> with_tips{};  ///< All triangles, where some of their corners have two sides.
 
   /// Cells of a row.
@@ -87,7 +88,7 @@ LimitTriangle triangle_of(const LimitLattice& lattice, std::uint32_t t);
 /// Some triangles in a row: their nodes lie in a ball, and the normals of their sides in a cone. Both together tell of most that no curve
 /// goes through them.
 struct LimitBlock {
-  std::uint32_t first = 0, end = 0;  ///< Into LimitGrid::triangles.
+  std::uint32_t first = 0, end = 0;  ///< Of all triangles of the grid.
   glm::dvec3 center{0.0}, axis{0.0};
   double radius = 0.0;
   double angle = 0.0;               ///< Between the cone's axis and its surface.

@@ -63,7 +63,14 @@ struct PixelTile {
 /// The coherent rays of one picture: what a surface may prepare for all of its tiles at once.
 struct ViewRequest {
   Camera camera{};              ///< Eye in render space.
-  glm::dvec2 sample{0.5, 0.5};  ///< Where in each pixel its ray goes.
+  glm::dvec2 sample{0.5, 0.5};  ///< Where in each pixel its ray goes; of several samples at once the middle.
+  glm::dvec2 spread{0.0};       ///< How far several samples lie to either side of it, px. 0 unless the surface `traces_samples`.
+};
+
+/// One sample of a tile's pixels: its rays, and what they hit.
+struct SampleHits {
+  const RayBatch* rays = nullptr;  ///< Not null.
+  HitBatch* hits = nullptr;        ///< Not null.
 };
 
 /// A surface prepared for one picture (lists of what each tile sees). Immutable; read from many threads at a time.
@@ -73,6 +80,9 @@ struct SurfaceView {
   bool (*touches)(const void* state, const PixelTile& tile) = nullptr;
   /// As Surface::trace, for the rays of one tile. Null: Surface::trace is as good.
   void (*trace)(const void* state, const PixelTile& tile, const RayBatch& rays, HitBatch& hits) = nullptr;
+  /// As `trace`, for several samples of the tile's pixels, which share what beams of pixels tell. Null where Surface::traces_samples is
+  /// false.
+  void (*trace_samples)(const void* state, const PixelTile& tile, std::span<const SampleHits> samples) = nullptr;
 };
 
 /// What building it cost and how large it came out.
@@ -163,6 +173,7 @@ struct Surface {
   void (*prepare)(const void* state) = nullptr;
   /// Prepares for a picture, on the threads of the surrounding arena. Null: nothing to prepare.
   SurfaceView (*view)(const std::shared_ptr<const void>& state, const ViewRequest& request) = nullptr;
+  bool traces_samples = false;                 ///< `view` takes requests of several samples, and makes views that trace them together.
   Box bounds{};                                ///< Render space; infinite where the object is.
   SurfaceInfo info{};                          ///< See SurfaceInfo.
   std::shared_ptr<const Polygons> polygons{};  ///< What is traced, where it is made of polygons.

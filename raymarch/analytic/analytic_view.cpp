@@ -137,7 +137,7 @@ SurfaceView view_field(std::shared_ptr<const void> keep, const FieldTape& tape, 
     const PixelTile cell = grid.cell(k, camera);
     view->cells[static_cast<size_t>(k)] = refine_all(*view, cell, parents.empty() ? all : parents[big.index_at(cell.x, cell.y)]);
   });
-  return {view, touches, trace_tile};
+  return {view, touches, trace_tile, trace_tile_samples};
 }
 
 }  // namespace limn

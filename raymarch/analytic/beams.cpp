@@ -10,9 +10,11 @@ namespace {
 struct Span {
   double middle, half;
 };
-Span span_of(int first, int count, double center, double per_pixel) {
-  return {(first + 0.5 * (count - 1) - center) * per_pixel, 0.5 * (count - 1) * per_pixel};
+Span span_of(int first, int count, double center, double spread, double per_pixel) {
+  return {(first + 0.5 * (count - 1) - center) * per_pixel, (0.5 * (count - 1) + spread) * per_pixel};
 }
+Span across_of(const ViewBeams& view, int first, int count) { return span_of(first, count, view.center_x, view.spread.x, view.per_pixel); }
+Span down_of(const ViewBeams& view, int first, int count) { return span_of(first, count, view.center_y, view.spread.y, view.per_pixel); }
 
 void set_spread(const ViewBeams& view, double half_x, double half_y, LaneBeams& beams) {
   const glm::dvec3 x = half_x * view.right, y = half_y * view.up, none(0.0);
@@ -56,17 +58,18 @@ ViewBeams view_beams(const ViewRequest& request, double slack) {
   view.per_pixel = 1.0 / (view.perspective ? camera.focal_px : camera.pixels_per_unit);
   view.center_x = 0.5 * camera.width_px - request.sample.x;
   view.center_y = 0.5 * camera.height_px - request.sample.y;
+  view.spread = request.spread;
   view.slack = slack;
   return view;
 }
 
 double width_at(const ViewBeams& view, const PixelTile& rectangle, double z) {
-  return std::max(rectangle.width, rectangle.height) * view.per_pixel * (view.perspective ? std::abs(z) : 1.0);
+  return std::max(rectangle.width + 2.0 * view.spread.x, rectangle.height + 2.0 * view.spread.y) * view.per_pixel *
+         (view.perspective ? std::abs(z) : 1.0);
 }
 
 void slabs_of(const ViewBeams& view, const PixelTile& rectangle, double z0, double z1, int count, LaneBeams& beams) {
-  const Span x = span_of(rectangle.x, rectangle.width, view.center_x, view.per_pixel);
-  const Span y = span_of(rectangle.y, rectangle.height, view.center_y, view.per_pixel);
+  const Span x = across_of(view, rectangle.x, rectangle.width), y = down_of(view, rectangle.y, rectangle.height);
   set_spread(view, x.half, y.half, beams);
   for (int i = 0; i < kLanes; ++i) {
     const int slab = std::min(i, count - 1);
@@ -77,13 +80,12 @@ void slabs_of(const ViewBeams& view, const PixelTile& rectangle, double z0, doub
 
 void stretches_of(const ViewBeams& view, const PixelTile& tile, std::span<const BlockStretch> stretches, double z1, LaneBeams& beams) {
   const int across = (tile.width + 3) >> 2;
-  const double half = 1.5 * view.per_pixel;
-  set_spread(view, half, half, beams);
+  const double half_x = across_of(view, 0, 4).half, half_y = down_of(view, 0, 4).half;
+  set_spread(view, half_x, half_y, beams);
   for (size_t i = 0; i < static_cast<size_t>(kLanes); ++i) {
     const BlockStretch& s = stretches[i < stretches.size() ? i : 0];
-    const Span x = span_of(tile.x + (s.block % across) * 4, 4, view.center_x, view.per_pixel);
-    const Span y = span_of(tile.y + (s.block / across) * 4, 4, view.center_y, view.per_pixel);
-    set_lane(view, x.middle, y.middle, half, half, s.z, std::min(s.z + s.length, z1), static_cast<int>(i), beams);
+    const Span x = across_of(view, tile.x + (s.block % across) * 4, 4), y = down_of(view, tile.y + (s.block / across) * 4, 4);
+    set_lane(view, x.middle, y.middle, half_x, half_y, s.z, std::min(s.z + s.length, z1), static_cast<int>(i), beams);
   }
 }
 

@@ -12,6 +12,7 @@ struct ViewBeams {
   bool perspective = true;
   double per_pixel = 1.0;                 ///< Perspective: 1 / focal length in pixels; parallel: world units.
   double center_x = 0.0, center_y = 0.0;  ///< Of the picture, less where in a pixel rays go: pixel i runs along i - center.
+  glm::dvec2 spread{0.0};                 ///< Of several samples, px to either side of that.
   double slack = 0.0;                     ///< World units by which rays may stray from their pixel, float as they are.
 };
 

@@ -21,33 +21,34 @@ void guess_roots(const RayBlock& block, const LaneBeams& beams, const LaneBounds
 }
 
 /// Takes a block's rays from the loop to be isolated one by one in what is left of the run.
-void leave_to_isolation(TileWork& work, const SlabRun& run, double z, int block) {
-  unsigned& active = work.active[static_cast<size_t>(block)];
+void leave_to_isolation(SampleWork& sample, const SlabRun& run, double z, int block) {
+  unsigned& active = sample.active[static_cast<size_t>(block)];
   LaneArray a, b;
   unsigned late = 0;
-  const unsigned lanes = stretches_between(work.block[static_cast<size_t>(block)], z, run.z1, run.sign_from, a, b, late) & active;
-  enqueue(work, block, lanes, a, b, run.sign == 0.0 ? lanes : late, run.sign);
+  const unsigned lanes = stretches_between(sample.block[static_cast<size_t>(block)], z, run.z1, run.sign_from, a, b, late) & active;
+  enqueue(sample, block, lanes, a, b, run.sign == 0.0 ? lanes : late, run.sign);
   active &= ~lanes;
 }
 
 /// The roots of a block's rays between two depths where f falls, or does not for those that start within the field.
 void trace_monotone(TileWork& work, const SlabRun& run, const MarchTape& march, const LaneBeams& beams, const LaneBounds& bounds,
-                    bool falls, int lane, int block) {
-  unsigned& active = work.active[static_cast<size_t>(block)];
-  const RayBlock& rays = work.block[static_cast<size_t>(block)];
+                    bool falls, int lane, int block, SampleWork& sample) {
+  unsigned& active = sample.active[static_cast<size_t>(block)];
+  if (active == 0) return;
+  const RayBlock& rays = sample.block[static_cast<size_t>(block)];
   const double z0 = beams.middle[lane] - beams.half[lane], z1 = beams.middle[lane] + beams.half[lane];
   LaneArray a, b, t, sign;
   unsigned late = 0, undecided = 0;
   const unsigned lanes = stretches_between(rays, z0, z1, run.sign_from, a, b, late) & active;
-  if ((lanes & late) != 0) return leave_to_isolation(work, run, z0, block);
+  if ((lanes & late) != 0) return leave_to_isolation(sample, run, z0, block);
   if (lanes == 0 || !falls) return;
   guess_roots(rays, beams, bounds, lane, t);
   const unsigned found =
       newton_roots(march, rays.rays, a, b, run.sign, kNewtonTolerance * work.view.limits.extent, lanes, work.scratch.tape, t, undecided);
-  if (undecided != 0) return leave_to_isolation(work, run, z0, block);
+  if (undecided != 0) return leave_to_isolation(sample, run, z0, block);
   if (found == 0) return;
   std::fill_n(sign.lane, kLanes, run.sign);
-  write_roots(march, work.rays, rays.rays, t, sign, nullptr, block * kLanes, found, work.scratch.tape, work.hits);
+  write_roots(march, *sample.own.rays, rays.rays, t, sign, nullptr, block * kLanes, found, work.scratch.tape, *sample.own.hits);
   active &= ~found;
 }
 
@@ -73,7 +74,8 @@ bool trace_stretch(TileWork& work, const SlabRun& run, std::span<const TapeStep>
                work.scratch.block_steps);
     pruned = lane;
   }
-  trace_monotone(work, run, {work.view.tape, work.scratch.block_steps}, beams, bounds, run.sign > 0.0 ? down : up, lane, block);
+  const MarchTape march{work.view.tape, work.scratch.block_steps};
+  for (SampleWork& sample : work.samples) trace_monotone(work, run, march, beams, bounds, run.sign > 0.0 ? down : up, lane, block, sample);
   return true;
 }
 
@@ -90,7 +92,7 @@ int next_stretches(const TileWork& work, const SlabRun& run, const BlockFronts& 
   std::array<int, kLanes> blocks{};
   for (int block = 0; block < work.blocks; ++block) {
     const auto k = static_cast<size_t>(block);
-    if (work.active[k] != 0 && fronts.z[k] < run.z1) blocks[static_cast<size_t>(going++)] = block;
+    if (fronts.z[k] < run.z1 && work.is_active(block)) blocks[static_cast<size_t>(going++)] = block;
   }
   for (int i = 0; i < going; ++i) {
     const int block = blocks[static_cast<size_t>(i)], tries = kLanes / going;
@@ -103,31 +105,30 @@ int next_stretches(const TileWork& work, const SlabRun& run, const BlockFronts& 
   return count;
 }
 
+void settle_queue(TileWork& work, const MarchTape& march, SampleWork& sample) {
+  StretchList& queue = sample.queue;
+  std::array<unsigned, kLanes> waiting{};
+  for (int k = 0; k < queue.count; ++k) waiting[static_cast<size_t>(queue[k].lane / kLanes)] |= 1u << queue[k].lane % kLanes;
+  isolate(march, work.view.limits, *sample.own.rays, work.scratch.tape, queue, *sample.own.hits);
+  for (int k = 0; k < queue.count; ++k) waiting[static_cast<size_t>(queue[k].lane / kLanes)] &= ~(1u << queue[k].lane % kLanes);
+  for (size_t block = 0; block < waiting.size(); ++block) sample.active[block] |= waiting[block];
+  polish(march, work.view.limits, *sample.own.rays, work.scratch.tape, queue, *sample.own.hits);
+  queue.count = 0;
+}
+
 }  // namespace
 
-void enqueue(TileWork& work, int block, unsigned lanes, const LaneArray& a, const LaneArray& b, unsigned unsure, double sign) {
+void enqueue(SampleWork& sample, int block, unsigned lanes, const LaneArray& a, const LaneArray& b, unsigned unsure, double sign) {
   for (unsigned left = lanes; left != 0; left &= left - 1) {
     const int i = std::countr_zero(left);
-    work.queue.add({block * kLanes + i, 0, a[i], b[i], unsure >> i & 1u ? 0.0 : sign});
+    sample.queue.add({block * kLanes + i, 0, a[i], b[i], unsure >> i & 1u ? 0.0 : sign});
   }
 }
 
-void settle_queue(TileWork& work, std::span<const TapeStep> steps) {
-  if (work.queue.count == 0) return;
+void settle_queues(TileWork& work, std::span<const TapeStep> steps) {
   const MarchTape march{work.view.tape, steps};
-  std::array<unsigned, kLanes> waiting{};
-  for (int k = 0; k < work.queue.count; ++k) {
-    const int lane = work.queue[k].lane;
-    waiting[static_cast<size_t>(lane / kLanes)] |= 1u << lane % kLanes;
-  }
-  isolate(march, work.view.limits, work.rays, work.scratch.tape, work.queue, work.hits);
-  for (int k = 0; k < work.queue.count; ++k) {
-    const int lane = work.queue[k].lane;
-    waiting[static_cast<size_t>(lane / kLanes)] &= ~(1u << lane % kLanes);
-  }
-  for (size_t block = 0; block < waiting.size(); ++block) work.active[block] |= waiting[block];
-  polish(march, work.view.limits, work.rays, work.scratch.tape, work.queue, work.hits);
-  work.queue.count = 0;
+  for (SampleWork& sample : work.samples)
+    if (sample.queue.count != 0) settle_queue(work, march, sample);
 }
 
 /// Cuts the run, block by block and front to back, into stretches where bounds of f and its slope tell that there is nothing, or that f
@@ -164,12 +165,12 @@ void trace_run(TileWork& work, const SlabRun& run, std::span<const TapeStep> ste
       } else if (length > fronts.shortest && run.sign != 0.0) {
         length *= kCut;
       } else {
-        leave_to_isolation(work, run, z, block);
+        for (SampleWork& sample : work.samples) leave_to_isolation(sample, run, z, block);
         z = run.z1;
       }
     }
   }
-  settle_queue(work, steps);
+  settle_queues(work, steps);
 }
 
 }  // namespace limn

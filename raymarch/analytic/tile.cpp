@@ -12,11 +12,11 @@ namespace {
 constexpr int kLongestRun = 3;  // Slabs.
 constexpr size_t kFewBalls = 3;
 
-void trace_balls(TileWork& work, const SlabRun& run, std::span<const TapeStep> steps, std::span<const std::uint32_t> balls) {
+void trace_balls(const TileWork& work, const SlabRun& run, std::span<const std::uint32_t> balls, SampleWork& sample) {
   for (int block = 0; block < work.blocks; ++block) {
-    unsigned& active = work.active[static_cast<size_t>(block)];
+    unsigned& active = sample.active[static_cast<size_t>(block)];
     if (active == 0) continue;
-    const RayBlock& rays = work.block[static_cast<size_t>(block)];
+    const RayBlock& rays = sample.block[static_cast<size_t>(block)];
     LaneArray a, b;
     unsigned late = 0, unsure = 0;
     const unsigned lanes = stretches_between(rays, run.z0, run.z1, run.sign_from, a, b, late) & active;
@@ -24,17 +24,24 @@ void trace_balls(TileWork& work, const SlabRun& run, std::span<const TapeStep> s
     BallHits found;
     const unsigned hit = ball_roots(*work.view.tape, balls, rays.rays, a, b, found, unsure) & lanes;
     // From within a ball the way out is that of all that it overlaps.
-    enqueue(work, block, lanes & unsure, a, b, ~0u, 0.0);
+    enqueue(sample, block, lanes & unsure, a, b, ~0u, 0.0);
     active &= ~(lanes & unsure);
     const unsigned entered = hit & ~unsure;
-    if (entered != 0) write_ball_hits(work.rays, block * kLanes, found, entered, work.hits);
+    if (entered != 0) write_ball_hits(*sample.own.rays, block * kLanes, found, entered, *sample.own.hits);
     active &= ~entered;
   }
-  settle_queue(work, steps);
 }
 
+void trace_balls(TileWork& work, const SlabRun& run, std::span<const TapeStep> steps, std::span<const std::uint32_t> balls) {
+  for (SampleWork& sample : work.samples) trace_balls(work, run, balls, sample);
+  settle_queues(work, steps);
+}
+
+/// True where rays meet a few balls, without any bounds of f that samples could share.
+bool is_few_balls(const TapeSegment& segment) { return !segment.balls.empty() && segment.balls.size() <= kFewBalls; }
+
 void trace_segment(TileWork& work, const PixelTile& rectangle, const TapeSegment& segment) {
-  if (!segment.balls.empty() && segment.balls.size() <= kFewBalls) {
+  if (is_few_balls(segment)) {
     return trace_balls(work, {segment.z0, segment.z1, segment.sign, segment.sign_from, 0}, segment.steps, segment.balls);
   }
   SlabRuns runs;
@@ -74,8 +81,44 @@ PixelTile overlap(const PixelTile& a, const PixelTile& b) {
 /// True where float has moved no ray farther from its pixel's beam than the view allows for.
 bool within_slack(const TileWork& work) {
   double largest = 0.0;
-  for (int block = 0; block < work.blocks; ++block) largest = std::max(largest, work.block[static_cast<size_t>(block)].reach);
+  for (const SampleWork& sample : work.samples)
+    for (int block = 0; block < work.blocks; ++block) largest = std::max(largest, sample.block[static_cast<size_t>(block)].reach);
   return 1e-6 * (std::sqrt(3.0) * largest + work.view.reach) <= work.view.beams.slack;
+}
+
+/// Calls visit(segments, cell) for the cells of a view that hold anything and that the tile reaches into.
+template <class Visit>
+void visit_cells(const FieldView& view, const PixelTile& tile, const Visit& visit) {
+  for (int row = tile.y / kCell_px; row <= (tile.y + tile.height - 1) / kCell_px; ++row) {
+    for (int column = tile.x / kCell_px; column <= (tile.x + tile.width - 1) / kCell_px; ++column) {
+      const std::vector<TapeSegment>& segments = view.cell(column, row);
+      if (!segments.empty()) visit(segments, PixelTile{column * kCell_px, row * kCell_px, kCell_px, kCell_px});
+    }
+  }
+}
+
+void trace_together(const FieldView& view, const PixelTile& tile, ViewScratch& scratch, std::span<const SampleHits> samples) {
+  if (scratch.samples.size() < samples.size()) scratch.samples.resize(samples.size());
+  TileWork work(view, scratch, tile, std::span(scratch.samples).first(samples.size()));
+  for (size_t k = 0; k < samples.size(); ++k) {
+    SampleWork& sample = work.samples[k];
+    sample.own = samples[k];
+    for (int block = 0; block < work.blocks; ++block)
+      load_block(*sample.own.rays, block * kLanes, view.beams.eye, view.beams.forward, sample.block[static_cast<size_t>(block)]);
+  }
+  if (!within_slack(work)) {
+    for (const SampleHits& sample : samples) view.tracer.trace(view.tracer.state, *sample.rays, *sample.hits);
+    return;
+  }
+  visit_cells(view, tile, [&](std::span<const TapeSegment> segments, const PixelTile& cell) {
+    const PixelTile part = overlap(tile, cell);
+    const bool whole = part.width == tile.width && part.height == tile.height;
+    for (int block = 0; block < work.blocks; ++block) {
+      const unsigned lanes = whole ? 0xffffu : lanes_within(tile, cell, block);
+      for (SampleWork& sample : work.samples) sample.active[static_cast<size_t>(block)] = lanes;
+    }
+    for (size_t k = 0; k < segments.size() && !work.done(); ++k) trace_segment(work, part, segments[k]);
+  });
 }
 
 }  // namespace
@@ -112,25 +155,21 @@ void find_runs(const FieldView& view, const PixelTile& rectangle, const TapeSegm
   finish();
 }
 
-void trace_tile(const void* opaque, const PixelTile& tile, const RayBatch& rays, HitBatch& hits) {
+void trace_tile_samples(const void* opaque, const PixelTile& tile, std::span<const SampleHits> samples) {
   const FieldView& view = *static_cast<const FieldView*>(opaque);
-  TileWork work(view, rays, hits, view.scratch->views.local(), tile);
-  for (int block = 0; block < work.blocks; ++block) {
-    load_block(rays, block * kLanes, view.beams.eye, view.beams.forward, work.block[static_cast<size_t>(block)]);
-  }
-  if (!within_slack(work)) return view.tracer.trace(view.tracer.state, rays, hits);
-  for (int row = tile.y / kCell_px; row <= (tile.y + tile.height - 1) / kCell_px; ++row) {
-    for (int column = tile.x / kCell_px; column <= (tile.x + tile.width - 1) / kCell_px; ++column) {
-      const std::vector<TapeSegment>& segments = view.cell(column, row);
-      if (segments.empty()) continue;
-      const PixelTile cell{column * kCell_px, row * kCell_px, kCell_px, kCell_px}, part = overlap(tile, cell);
-      const bool whole = part.width == tile.width && part.height == tile.height;
-      for (int block = 0; block < work.blocks; ++block) {
-        work.active[static_cast<size_t>(block)] = whole ? 0xffffu : lanes_within(tile, cell, block);
-      }
-      for (size_t k = 0; k < segments.size() && !work.done(); ++k) trace_segment(work, part, segments[k]);
-    }
-  }
+  ViewScratch& scratch = view.scratch->views.local();
+  bool shares = false;
+  visit_cells(view, tile, [&](std::span<const TapeSegment> segments, const PixelTile&) {
+    shares = shares || !std::all_of(segments.begin(), segments.end(), is_few_balls);
+  });
+  // Without anything to share the rays of one sample at a time stay in the cache.
+  const size_t at_once = shares ? samples.size() : 1;
+  for (size_t k = 0; k < samples.size(); k += at_once) trace_together(view, tile, scratch, samples.subspan(k, at_once));
+}
+
+void trace_tile(const void* view, const PixelTile& tile, const RayBatch& rays, HitBatch& hits) {
+  const SampleHits one{&rays, &hits};
+  trace_tile_samples(view, tile, std::span(&one, 1));
 }
 
 }  // namespace limn

@@ -4,17 +4,26 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include "raymarch/analytic/analytic_view.h"
+#include "raymarch/analytic/block.h"
 
 namespace limn {
 
 inline constexpr int kCell_px = 64;
+
+/// One sample's rays of a tile on their way: which of them have yet to meet the surface.
+struct SampleWork {
+  SampleHits own{};
+  std::array<RayBlock, kLanes> block;
+  std::array<unsigned, kLanes> active{};  ///< Lanes of each block.
+  StretchList queue{};                    ///< Empty between runs.
+};
 
 struct ViewScratch {
   TapeScratch tape{};
   std::vector<TapeStep> run_steps{}, block_steps{};
   std::vector<std::uint32_t> balls{};
   std::vector<TapeChoice> choices{};
-  StretchList queue{};  ///< Empty between tiles.
+  std::vector<SampleWork> samples{};  ///< Of a tile.
 };
 
 /// Memory for threads, one piece for each however many fields a model has: of thousands of small objects it would be most of what they
@@ -57,7 +66,8 @@ struct SlabRuns {
 void find_runs(const FieldView& view, const PixelTile& rectangle, const TapeSegment& within, std::span<const TapeStep> steps,
                ViewScratch& scratch, SlabRuns& runs);
 
-/// SurfaceView::trace of a FieldView.
+/// SurfaceView::trace and SurfaceView::trace_samples of a FieldView.
 void trace_tile(const void* view, const PixelTile& tile, const RayBatch& rays, HitBatch& hits);
+void trace_tile_samples(const void* view, const PixelTile& tile, std::span<const SampleHits> samples);
 
 }  // namespace limn

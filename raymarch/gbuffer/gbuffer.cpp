@@ -51,14 +51,12 @@ struct Pass {
   GBuffer* out = nullptr;
 };
 
-/// What the tiles of a pass share.
+/// What the tiles of passes share whose rays are traced together.
 struct Shared {
   const SceneModel& model;
   ModelView view;
   const PictureRays& rays;
-  TileWriter writer;
-  Use use;
-  glm::dvec2 sample;
+  std::span<const Pass> passes;
 };
 
 PixelTile moved(PixelTile pixels, const glm::ivec2& first) {
@@ -76,36 +74,60 @@ void finish_run(const Use& use, const TileWriter& writer, const TracedPixels& ru
 
 /// What one task holds.
 struct TaskMemory {
-  GBuffer layers{};  ///< That are not kept.
+  std::vector<GBuffer> layers{};  ///< Of each pass, that are not kept.
   Image<float> sums{};
+  std::vector<RayBatch> rays{};    ///< Of each pass.
+  std::vector<SceneHits> found{};  ///< Of each pass.
 };
 
-void render_tiles(const Shared& shared, const PixelTile& row, int tile_px, TaskMemory& own) {
-  TileWriter writer = shared.writer;
-  glm::ivec2 first(0);
-  if (shared.use.layers != nullptr) {
-    size_layers(*shared.use.layers, row.width, row.height, own.layers);
-    writer.out = &own.layers;
-    first = {row.x, row.y};
+/// Where the layers of a pass go in a task.
+struct PassLayers {
+  TileWriter writer;
+  glm::ivec2 first{0};  ///< Pixel of the picture that they begin with.
+};
+
+std::vector<PassLayers> layers_in(const Shared& shared, const PixelTile& row, TaskMemory& own) {
+  const size_t passes = shared.passes.size();
+  if (own.layers.size() < passes) own.layers.resize(passes), own.rays.resize(passes), own.found.resize(passes);
+  std::vector<PassLayers> layers;
+  for (size_t k = 0; k < passes; ++k) {
+    const Pass& pass = shared.passes[k];
+    PassLayers& one = layers.emplace_back(tile_writer(shared.model, shared.rays, *pass.out));
+    if (pass.use.layers == nullptr) continue;
+    size_layers(*pass.use.layers, row.width, row.height, own.layers[k]);
+    one.writer.out = &own.layers[k];
+    one.first = {row.x, row.y};
   }
-  TracedPixels run{*writer.out, first, row, own.sums, {row.x, row.y, 0, row.height}, false};
+  return layers;
+}
+
+void render_tile(const Shared& shared, const PixelTile& tile, std::span<const PassLayers> layers, TaskMemory& own) {
+  const size_t passes = layers.size();
+  for (size_t k = 0; k < passes; ++k) fill_rays(shared.rays, tile, shared.passes[k].sample, own.rays[k]);
+  trace_scene(shared.model, shared.view, tile, std::span(own.rays).first(passes), std::span(own.found).first(passes));
+  for (size_t k = 0; k < passes; ++k) write_tile(layers[k].writer, moved(tile, layers[k].first), own.rays[k], own.found[k]);
+}
+
+void render_tiles(const Shared& shared, const PixelTile& row, int tile_px, TaskMemory& own) {
+  const std::vector<PassLayers> layers = layers_in(shared, row, own);
+  PixelTile run{row.x, row.y, 0, row.height};
+  bool run_is_seen = false;
+  const auto finish = [&] {
+    for (size_t k = 0; k < layers.size(); ++k)
+      finish_run(shared.passes[k].use, layers[k].writer, {*layers[k].writer.out, layers[k].first, row, own.sums, run, run_is_seen});
+  };
   for (int x = row.x; x < row.x + row.width; x += tile_px) {
     const PixelTile tile{x, row.y, std::min(tile_px, row.x + row.width - x), row.height};
     const bool seen = touches(shared.view, tile);
-    if (seen != run.seen) {
-      finish_run(shared.use, writer, run);
-      run.pixels = {x, row.y, 0, row.height};
-      run.seen = seen;
+    if (seen != run_is_seen) {
+      finish();
+      run = {x, row.y, 0, row.height};
+      run_is_seen = seen;
     }
-    run.pixels.width += tile.width;
-    if (!seen) continue;
-    RayBatch rays;
-    SceneHits found;
-    fill_rays(shared.rays, tile, shared.sample, rays);
-    trace_scene(shared.model, shared.view, tile, rays, found);
-    write_tile(writer, moved(tile, first), rays, found);
+    run.width += tile.width;
+    if (seen) render_tile(shared, tile, layers, own);
   }
-  finish_run(shared.use, writer, run);
+  finish();
 }
 
 void check(const ExecutionSettings& how) { LIMN_CHECK(how.tile_px >= 1 && how.tile_px <= 16 && how.threads >= kSurroundingThreads); }
@@ -118,8 +140,8 @@ std::vector<std::int32_t> turned_ids(const ModelView& view) {
   return ids;
 }
 
-/// Of each task all passes, one after the other.
-void render_tasks(const std::vector<Shared>& passes, const PixelTile& window, const ExecutionSettings& how) {
+/// Of each task all passes, those of one after the other.
+void render_tasks(const std::vector<Shared>& groups, const PixelTile& window, const ExecutionSettings& how) {
   const int task_px = kTilesInARow * how.tile_px;
   const int columns = (window.width + task_px - 1) / task_px, rows = (window.height + how.tile_px - 1) / how.tile_px;
   const std::int64_t tasks = std::int64_t{columns} * rows;
@@ -130,11 +152,32 @@ void render_tasks(const std::vector<Shared>& passes, const PixelTile& window, co
     const int x = static_cast<int>(k % columns) * task_px, y = static_cast<int>(k / columns) * how.tile_px;
     const PixelTile row{window.x + x, window.y + y, std::min(task_px, window.width - x), std::min(how.tile_px, window.height - y)};
     TaskMemory own;
-    for (const Shared& pass : passes) render_tiles(pass, row, how.tile_px, own);
+    for (const Shared& passes : groups) render_tiles(passes, row, how.tile_px, own);
     if (!how.progress) return;
     const std::lock_guard lock(progress_mutex);
     how.progress(static_cast<double>(++done) / static_cast<double>(tasks));
   });
+}
+
+/// A request for all of the passes at once.
+ViewRequest request_of(const Camera& camera, std::span<const Pass> passes) {
+  glm::dvec2 least = passes[0].sample, most = least;
+  for (const Pass& pass : passes) least = glm::min(least, pass.sample), most = glm::max(most, pass.sample);
+  return {camera, 0.5 * (least + most), 0.5 * (most - least)};
+}
+
+std::vector<Shared> group(const SceneModel& model, const Camera& camera, const PictureRays& rays, std::span<const Pass> passes) {
+  const bool together = std::all_of(model.surfaces.begin(), model.surfaces.end(), [](const Surface& s) { return s.traces_samples; });
+  std::vector<Shared> groups;
+  for (size_t k = 0, most = together ? kMostSamples : 1; k < passes.size(); k += most) {
+    const std::span<const Pass> of = passes.subspan(k, std::min(most, passes.size() - k));
+    groups.push_back({model, view_model(model, request_of(camera, of)), rays, of});
+    for (const Pass& pass : of) {
+      pass.out->sample = pass.sample;
+      pass.out->turned = turned_ids(groups.back().view);
+    }
+  }
+  return groups;
 }
 
 void render(const SceneModel& model, const Camera& camera, const ExecutionSettings& how, const PixelTile& window,
@@ -146,14 +189,7 @@ void render(const SceneModel& model, const Camera& camera, const ExecutionSettin
   const SceneExtent extent = scene_extent(model);
   const auto trace = [&] {
     const PictureRays rays = picture_rays(render_camera, extent.radius, extent.bounded);
-    std::vector<Shared> shared;
-    for (const Pass& pass : passes) {
-      shared.push_back(
-          {model, view_model(model, {render_camera, pass.sample}), rays, tile_writer(model, rays, *pass.out), pass.use, pass.sample});
-      pass.out->sample = pass.sample;
-      pass.out->turned = turned_ids(shared.back().view);
-    }
-    render_tasks(shared, window, how);
+    render_tasks(group(model, render_camera, rays, passes), window, how);
   };
   if (how.threads == kSurroundingThreads) {
     trace();

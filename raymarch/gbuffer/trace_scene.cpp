@@ -1,7 +1,9 @@
 #include "raymarch/gbuffer/trace_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 
 #include "raymarch/mesh/open_sheet.h"
 #include "raymarch/scene/covered_pixels.h"
@@ -30,24 +32,40 @@ bool nearer(int i, const HitBatch& own, const RayBatch& rays, const SceneHits& f
   return own.t[i] < rays.t_max[i] - reach * 0x1p-19f;
 }
 
-/// `trace(object, hits)` traces one surface. `visit(f)` calls f for each that may be.
+/// Hits of one surface become the scene's where they are nearer.
+void take_nearer(size_t object, const HitBatch& own, RayBatch& rays, SceneHits& found) {
+  for (int i = 0; i < rays.count; ++i) {
+    if (own.status[i] != HitStatus::miss && nearer(i, own, rays, found)) take_hit(i, static_cast<int>(object), own, rays, found);
+  }
+}
+
+/// `trace(object, samples)` traces one surface. `visit(f)` calls f for each that may be.
 template <class Visit, class Trace>
-void trace_all(size_t objects, RayBatch& rays, SceneHits& found, const Visit& visit, const Trace& trace) {
-  std::fill_n(found.hits.status, rays.count, HitStatus::miss);
+void trace_all(size_t objects, std::span<RayBatch> rays, std::span<SceneHits> found, const Visit& visit, const Trace& trace) {
+  std::array<SampleHits, kMostSamples> samples;
+  const size_t count = rays.size();
+  for (size_t k = 0; k < count; ++k) {
+    std::fill_n(found[k].hits.status, rays[k].count, HitStatus::miss);
+    samples[k] = {&rays[k], &found[k].hits};
+  }
   if (objects == 1) {
-    trace(size_t{0}, found.hits);
-    for (int i = 0; i < rays.count; ++i) found.object[i] = found.hits.status[i] == HitStatus::hit ? 0 : -1;
+    trace(size_t{0}, std::span(samples).first(count));
+    for (size_t k = 0; k < count; ++k)
+      for (int i = 0; i < rays[k].count; ++i) found[k].object[i] = found[k].hits.status[i] == HitStatus::hit ? 0 : -1;
     return;
   }
-  std::fill_n(found.object, rays.count, -1);
-  HitBatch own;
+  const auto own = std::make_unique_for_overwrite<HitBatch[]>(count);
+  for (size_t k = 0; k < count; ++k) {
+    std::fill_n(found[k].object, rays[k].count, -1);
+    samples[k].hits = &own[k];
+  }
   visit([&](size_t object) {
-    std::fill_n(own.status, rays.count, HitStatus::miss);
-    std::copy_n(rays.t_max, rays.count, own.t);
-    trace(object, own);
-    for (int i = 0; i < rays.count; ++i) {
-      if (own.status[i] != HitStatus::miss && nearer(i, own, rays, found)) take_hit(i, static_cast<int>(object), own, rays, found);
+    for (size_t k = 0; k < count; ++k) {
+      std::fill_n(own[k].status, rays[k].count, HitStatus::miss);
+      std::copy_n(rays[k].t_max, rays[k].count, own[k].t);
     }
+    trace(object, std::span(samples).first(count));
+    for (size_t k = 0; k < count; ++k) take_nearer(object, own[k], rays[k], found[k]);
   });
 }
 
@@ -155,30 +173,33 @@ void trace_scene(const SceneModel& model, std::span<const char> turned, PointRay
   const auto visit = [&](const auto& take) {
     for (size_t k = 0; k < model.surfaces.size(); ++k) take(k);
   };
-  trace_all(model.surfaces.size(), rays, found, visit, [&](size_t k, HitBatch& hits) {
+  trace_all(model.surfaces.size(), {&rays, 1}, {&found, 1}, visit, [&](size_t k, std::span<const SampleHits> samples) {
     const Surface& surface = model.surfaces[k];
     const bool packets = how == PointRays::in_packets && surface.trace_packets != nullptr;
-    (packets ? surface.trace_packets : surface.trace)(surface.state.get(), rays, hits);
+    (packets ? surface.trace_packets : surface.trace)(surface.state.get(), rays, *samples[0].hits);
   });
   turn_normals(turned, rays, found);
 }
 
-void trace_scene(const SceneModel& model, const ModelView& view, const PixelTile& tile, RayBatch& rays, SceneHits& found) {
+void trace_scene(const SceneModel& model, const ModelView& view, const PixelTile& tile, std::span<RayBatch> rays,
+                 std::span<SceneHits> found) {
   const auto visit = [&](const auto& take) {
     visit_surfaces(view, tile, [&take](size_t k) {
       take(k);
       return true;
     });
   };
-  trace_all(model.surfaces.size(), rays, found, visit, [&](size_t k, HitBatch& hits) {
+  trace_all(model.surfaces.size(), rays, found, visit, [&](size_t k, std::span<const SampleHits> samples) {
     const SurfaceView& surface = view.surfaces[k];
     if (!touches(surface, view.covered[k], tile)) return;
-    if (surface.trace)
-      surface.trace(surface.state.get(), tile, rays, hits);
+    if (samples.size() > 1)
+      surface.trace_samples(surface.state.get(), tile, samples);
+    else if (surface.trace)
+      surface.trace(surface.state.get(), tile, rays[0], *samples[0].hits);
     else
-      model.surfaces[k].trace(model.surfaces[k].state.get(), rays, hits);
+      model.surfaces[k].trace(model.surfaces[k].state.get(), rays[0], *samples[0].hits);
   });
-  turn_normals(view.turned, rays, found);
+  for (size_t k = 0; k < rays.size(); ++k) turn_normals(view.turned, rays[k], found[k]);
 }
 
 }  // namespace limn

@@ -9,6 +9,9 @@
 
 namespace limn {
 
+/// Samples of a picture that are traced together, at most.
+inline constexpr size_t kMostSamples = 8;
+
 /// The sphere about the render origin that holds every bounded surface.
 struct SceneExtent {
   double radius = 0.0;
@@ -38,6 +41,8 @@ bool touches(const ModelView& view, const PixelTile& tile);
 /// Shortens rays.t_max to the hits. A ray that ran out of steps hides what lies behind that point: nobody knows what is there. Normals of
 /// surfaces that are `turned` (empty: none) point towards the ray's origin.
 void trace_scene(const SceneModel& model, std::span<const char> turned, PointRays how, RayBatch& rays, SceneHits& found);
-void trace_scene(const SceneModel& model, const ModelView& view, const PixelTile& tile, RayBatch& rays, SceneHits& found);
+/// Of a tile's pixels; `found` has one for each of `rays`, which are several samples only where all surfaces trace them together.
+void trace_scene(const SceneModel& model, const ModelView& view, const PixelTile& tile, std::span<RayBatch> rays,
+                 std::span<SceneHits> found);
 
 }  // namespace limn

@@ -100,7 +100,7 @@ Surface build(const SceneObject& object, const SurfaceSettings& settings, const 
   surface.state = state;
   surface.trace = trace;
   // Without bounds there is no depth to divide.
-  if (state->limits.extent > 0.0) surface.view = view;
+  if (state->limits.extent > 0.0) surface.view = view, surface.traces_samples = true;
   surface.curvature = {state, evaluate_curvatures, "Hessian of the field"};
   surface.offset = field_offset(state->tape.field, settings.max_steps);
   surface.info.kind = "analytic";

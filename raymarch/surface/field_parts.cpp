@@ -49,10 +49,17 @@ void trace_tile(const void* of, const PixelTile& tile, const RayBatch& rays, Hit
   find_materials(*state.whole, rays, hits);
 }
 
+void trace_samples(const void* of, const PixelTile& tile, std::span<const SampleHits> samples) {
+  const ViewState& state = *static_cast<const ViewState*>(of);
+  state.view.trace_samples(state.view.state.get(), tile, samples);
+  for (const SampleHits& sample : samples) find_materials(*state.whole, *sample.rays, *sample.hits);
+}
+
 SurfaceView view(const std::shared_ptr<const void>& of, const ViewRequest& request) {
   auto whole = std::static_pointer_cast<const State>(of);
   SurfaceView made = whole->surface.view(whole->surface.state, request);
-  SurfaceView result{nullptr, made.touches ? touches_tile : nullptr, made.trace ? trace_tile : nullptr};
+  SurfaceView result{nullptr, made.touches ? touches_tile : nullptr, made.trace ? trace_tile : nullptr,
+                     made.trace_samples ? trace_samples : nullptr};
   result.state = std::make_shared<const ViewState>(ViewState{std::move(whole), std::move(made)});
   return result;
 }

@@ -73,7 +73,7 @@ void compare_tile(const Marched& marched, const SceneModel& model, const ModelVi
   fill_rays(picture, tile, {0.5, 0.5}, rays);
   RayBatch copy = rays;
   SceneHits found, grown, shrunk;
-  trace_scene(model, view, tile, copy, found);
+  trace_scene(model, view, tile, std::span(&copy, 1), std::span(&found, 1));
   for (int i = 0; i < rays.count; ++i) grown.hits.status[i] = shrunk.hits.status[i] = HitStatus::miss;
   marched.grown.trace(marched.grown.state.get(), rays, grown.hits);
   marched.shrunk.trace(marched.shrunk.state.get(), rays, shrunk.hits);

@@ -52,6 +52,30 @@ unsigned between(const RayBlock& block, double z0, double z1, double from, LaneA
   return some;
 }
 
+void guess(const LaneRays& rays, const SampleHits& other, int first, LaneArray& t) {
+  const RayBatch& before = *other.rays;
+  const HitBatch& hits = *other.hits;
+  LaneArray is_hit;
+  for (int i = 0; i < kLanes; ++i) is_hit[i] = hits.status[first + i] == HitStatus::hit ? 1.0 : 0.0;
+  const float* const origin[3] = {before.origin_x, before.origin_y, before.origin_z};
+  const float* const direction[3] = {before.direction_x, before.direction_y, before.direction_z};
+  const float* const normals[3] = {hits.normal_x, hits.normal_y, hits.normal_z};
+  for (int at = 0; at < kLanes; at += kWidth) {
+    const LaneMask known = load(is_hit, at) > reals(0.5);
+    const Reals place = load_floats(hits.t + first + at);
+    Reals height = reals(0.0), slope = reals(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Reals normal = load_floats(normals[axis] + first + at);
+      const Reals touched = load_floats(origin[axis] + first + at) + place * load_floats(direction[axis] + first + at);
+      height = height + normal * (touched - load(rays.origin[axis], at));
+      slope = slope + normal * load(rays.direction[axis], at);
+    }
+    // Edge-on the plane says little.
+    const LaneMask taken = both(known, abs(slope) > reals(1e-3));
+    store(select(taken, height / slope, load(t, at)), t, at);
+  }
+}
+
 unsigned newton(const MarchTape& march, const LaneRays& rays, const LaneArray& a, const LaneArray& b, double sign, double tolerance,
                 unsigned lanes, TapeScratch& scratch, LaneArray& t, unsigned& undecided) {
   constexpr int kMaxRounds = 40;
@@ -281,6 +305,7 @@ namespace limn {
 namespace {
 HWY_EXPORT(load_rays);
 HWY_EXPORT(between);
+HWY_EXPORT(guess);
 HWY_EXPORT(newton);
 HWY_EXPORT(balls);
 HWY_EXPORT(write_balls);
@@ -292,6 +317,9 @@ void load_block(const RayBatch& rays, int first, const glm::dvec3& eye, const gl
 }
 unsigned stretches_between(const RayBlock& block, double z0, double z1, double from, LaneArray& a, LaneArray& b, unsigned& late) {
   return HWY_DYNAMIC_DISPATCH(between)(block, z0, z1, from, a, b, late);
+}
+void guess_from_hits(const LaneRays& rays, const SampleHits& other, int first, LaneArray& t) {
+  HWY_DYNAMIC_DISPATCH(guess)(rays, other, first, t);
 }
 unsigned newton_roots(const MarchTape& march, const LaneRays& rays, const LaneArray& a, const LaneArray& b, double sign, double tolerance,
                       unsigned lanes, TapeScratch& scratch, LaneArray& t, unsigned& undecided) {

@@ -43,6 +43,8 @@ void trace_monotone(TileWork& work, const SlabRun& run, const MarchTape& march, 
   if ((lanes & late) != 0) return leave_to_isolation(sample, run, z0, block);
   if (lanes == 0 || !falls) return;
   guess_roots(rays, beams, bounds, lane, t);
+  const SampleWork& first = work.samples.front();
+  if (&sample != &first) guess_from_hits(rays.rays, first.own, block * kLanes, t);
   const unsigned found =
       newton_roots(march, rays.rays, a, b, run.sign, kNewtonTolerance * work.view.limits.extent, lanes, work.scratch.tape, t, undecided);
   if (undecided != 0) return leave_to_isolation(sample, run, z0, block);

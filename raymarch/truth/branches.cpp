@@ -106,6 +106,16 @@ class Splitter {
 /// The first branch is moved farthest, the last not at all.
 double outward(const SharpField& sharp, int branch) { return sharp.epsilon * (static_cast<double>(sharp.branches.size()) - 1.0 - branch); }
 
+void set_node_value(const SharpField& sharp, std::span<const double> branch_values, size_t i, std::vector<double>& values) {
+  const SharpNode& node = sharp.nodes[i];
+  if (node.branch >= 0) {
+    values[i] = branch_values[static_cast<size_t>(node.branch)] - outward(sharp, node.branch);
+    return;
+  }
+  const double a = values[static_cast<size_t>(node.left)], b = values[static_cast<size_t>(node.right)];
+  values[i] = node.maximum ? std::max(a, b) : std::min(a, b);
+}
+
 /// From a branch's node up to the root.
 std::vector<int> path_of(const SharpField& sharp, int branch) {
   std::vector<int> path;
@@ -143,15 +153,24 @@ SharpField cut_by(SharpField sharp, const Field& branch) {
 
 void node_values(const SharpField& sharp, std::span<const double> branch_values, std::vector<double>& values) {
   values.resize(sharp.nodes.size());
-  for (size_t i = 0; i < sharp.nodes.size(); ++i) {
-    const SharpNode& node = sharp.nodes[i];
-    if (node.branch >= 0) {
-      values[i] = branch_values[static_cast<size_t>(node.branch)] - outward(sharp, node.branch);
-      continue;
-    }
-    const double a = values[static_cast<size_t>(node.left)], b = values[static_cast<size_t>(node.right)];
-    values[i] = node.maximum ? std::max(a, b) : std::min(a, b);
-  }
+  for (size_t i = 0; i < sharp.nodes.size(); ++i) set_node_value(sharp, branch_values, i, values);
+}
+
+std::vector<int> nodes_above(const SharpField& sharp, std::span<const size_t> branches) {
+  std::vector<char> is_above(sharp.nodes.size(), 0);
+  for (const size_t branch : branches)
+    for (int node = sharp.node_of[branch]; node >= 0 && !is_above[static_cast<size_t>(node)];
+         node = sharp.nodes[static_cast<size_t>(node)].parent)
+      is_above[static_cast<size_t>(node)] = 1;
+  std::vector<int> nodes;
+  for (size_t i = 0; i < is_above.size(); ++i)
+    if (is_above[i]) nodes.push_back(static_cast<int>(i));
+  return nodes;
+}
+
+void update_node_values(const SharpField& sharp, std::span<const double> branch_values, std::span<const int> nodes,
+                        std::vector<double>& values) {
+  for (const int node : nodes) set_node_value(sharp, branch_values, static_cast<size_t>(node), values);
 }
 
 double surface_margin(const SharpField& sharp, std::span<const double> values, int first, int second) {

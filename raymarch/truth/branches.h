@@ -37,6 +37,11 @@ SharpField cut_by(SharpField sharp, const Field& branch);
 /// Values of all nodes from those of the branches, an epsilon apart.
 void node_values(const SharpField& sharp, std::span<const double> branch_values, std::vector<double>& values);
 
+/// The nodes whose values change with those of some branches, rising; and these alone, what all others have being in `values`.
+std::vector<int> nodes_above(const SharpField& sharp, std::span<const size_t> branches);
+void update_node_values(const SharpField& sharp, std::span<const double> branch_values, std::span<const int> nodes,
+                        std::vector<double>& values);
+
 /// Where branch `first` is 0 (and `second`, unless it is -1, as well): above 0 where that is on the surface of the whole, below where it is
 /// not. As steep as the steepest branch at most. `values` are node_values().
 double surface_margin(const SharpField& sharp, std::span<const double> values, int first, int second = -1);

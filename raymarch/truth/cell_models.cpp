@@ -108,7 +108,7 @@ void find_seams(size_t child, double half, ModelledCells& cells) {
 size_t ModelledCells::bytes() const {
   size_t sum = sizeof(*this) + models.capacity() * sizeof(CellModel) + seams.capacity() * sizeof(ModelledSeam);
   for (const CellScope& scope : inside) {
-    sum += sizeof(scope) + scope.branches.capacity() * sizeof(int);
+    sum += sizeof(scope) + scope.branches.capacity() * sizeof(int) + scope.tree.nodes.capacity() * sizeof(ScopeNode);
     for (const SharedSteps& steps : scope.steps) sum += sizeof(steps) + (steps.use_count() == 1 ? steps->size() * sizeof(TapeStep) : 0);
   }
   return sum;
@@ -155,7 +155,7 @@ void CellBounds::find_zeros(const CellScope& scope, size_t lanes, std::array<std
     zero[lane].clear();
     if (!values_hold_surface(scope, lane)) continue;
     for (size_t at = 0; at < values_.size(); ++at) {
-      if (!nodes_.relevant[static_cast<size_t>(scope.branches[at])]) continue;
+      if (!nodes_.relevant[at]) continue;
       relevant[lane].push_back(at);
       if (values_[at].contains(0.0)) zero[lane].push_back(at);
     }

@@ -1,7 +1,6 @@
 #include "raymarch/truth/cell_scope.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "sdf/field_program.h"
 #include "sdf/number.h"
@@ -30,58 +29,6 @@ std::array<Interval, kCurveFamilies> facing_bounds(const CellSearch& search, con
   return result;
 }
 
-void bound_nodes(const SharpField& sharp, std::span<const int> branches, std::span<const Interval> of_branches, NodeScratch& scratch) {
-  scratch.bounds.resize(sharp.nodes.size());
-  scratch.known.assign(sharp.nodes.size(), 0);
-  for (size_t i = 0; i < branches.size(); ++i) {
-    const auto node = static_cast<size_t>(sharp.node_of[static_cast<size_t>(branches[i])]);
-    scratch.bounds[node] = of_branches[i];
-    scratch.known[node] = 1;
-  }
-  for (size_t i = 0; i < sharp.nodes.size(); ++i) {
-    const SharpNode& node = sharp.nodes[i];
-    if (node.branch >= 0) continue;
-    const auto left = static_cast<size_t>(node.left), right = static_cast<size_t>(node.right);
-    const Interval &a = scratch.bounds[left], &b = scratch.bounds[right];
-    scratch.known[i] = scratch.known[left] | scratch.known[right];
-    if (scratch.known[left] && scratch.known[right]) {
-      scratch.bounds[i] = node.maximum ? maximum(a, b) : minimum(a, b);
-    } else {
-      scratch.bounds[i] = scratch.known[left] ? a : b;
-    }
-  }
-}
-
-/// A side is without influence where the other one decides: on the value, or on where it is zero.
-void mark_relevant(const SharpField& sharp, double epsilon, size_t at, NodeScratch& scratch) {
-  const SharpNode& node = sharp.nodes[at];
-  if (!scratch.known[at]) return;
-  if (node.branch >= 0) {
-    scratch.relevant[static_cast<size_t>(node.branch)] = 1;
-    return;
-  }
-  const auto left = static_cast<size_t>(node.left), right = static_cast<size_t>(node.right);
-  const auto matters = [&](size_t one, size_t other) {
-    if (!scratch.known[one]) return false;
-    const Interval &a = scratch.bounds[one], &b = scratch.bounds[other];
-    const bool both = scratch.known[other] != 0;
-    if (node.maximum) return !(a.upper < -epsilon) && !(both && a.upper < b.lower - epsilon);
-    return !(a.lower > epsilon) && !(both && a.lower > b.upper + epsilon);
-  };
-  // Where both are decided against, the box is empty of surface, and what remains says so.
-  if (matters(left, right)) mark_relevant(sharp, epsilon, left, scratch);
-  if (matters(right, left)) mark_relevant(sharp, epsilon, right, scratch);
-}
-
-/// NodeScratch::relevant, by branch; false where the box holds no surface.
-bool find_relevant(const SharpField& sharp, std::span<const int> branches, std::span<const Interval> of_branches, NodeScratch& scratch) {
-  bound_nodes(sharp, branches, of_branches, scratch);
-  scratch.relevant.assign(sharp.branches.size(), 0);
-  const double epsilon = sharp.epsilon * static_cast<double>(sharp.branches.size());
-  mark_relevant(sharp, epsilon, sharp.nodes.size() - 1, scratch);
-  return scratch.known.back() && !(scratch.bounds.back().lower > epsilon) && !(scratch.bounds.back().upper < -epsilon);
-}
-
 bool apart(const Interval& a, const Interval& b) { return (a.lower > 0.0 && b.lower > 0.0) || (a.upper < 0.0 && b.upper < 0.0); }
 
 void set_direction(LaneBeams& beams, const glm::dvec3& direction, double spread) {
@@ -101,6 +48,7 @@ CellTapes::CellTapes(const SharpField& sharp) {
     whole.branches.push_back(static_cast<int>(whole.branches.size()));
     whole.steps.push_back(std::make_shared<const std::vector<TapeStep>>(tapes.back().steps));
   }
+  whole.tree = tree_of(sharp);
 }
 
 void CellBounds::set_boxes(std::span<const glm::dvec3> lower, double side) {
@@ -177,11 +125,11 @@ Interval CellBounds::value_in(const CellScope& scope, size_t at, int lane) const
   return tighter({of.lower[lane], of.upper[lane]}, {middle - reach - slack, middle + reach + slack});
 }
 
-/// Fills `values_`, and of `nodes_` which branches are relevant in the box; false where it holds no surface.
+/// Fills `values_`, and of `nodes_` which of the scope's branches are relevant in the box; false where it holds no surface.
 bool CellBounds::values_hold_surface(const CellScope& scope, size_t lane) {
   values_.resize(scope.branches.size());
   for (size_t at = 0; at < values_.size(); ++at) values_[at] = value_in(scope, at, static_cast<int>(lane));
-  return find_relevant(search_.sharp, scope.branches, values_, nodes_);
+  return find_relevant(scope.tree, values_, nodes_);
 }
 
 void CellBounds::find_in(const CellScope& scope, size_t lane, Survivors& found) {
@@ -193,7 +141,7 @@ void CellBounds::find_in(const CellScope& scope, size_t lane, Survivors& found) 
   candidates_.clear();
   facing_.clear();
   for (size_t at = 0; at < values_.size(); ++at) {
-    if (!nodes_.relevant[static_cast<size_t>(scope.branches[at])]) continue;
+    if (!nodes_.relevant[at]) continue;
     found.relevant.push_back(at);
     if (!values_[at].contains(0.0)) continue;
     if (!bounds_[at].facing) {
@@ -232,6 +180,7 @@ void CellBounds::find(const CellScope& scope, std::span<const glm::dvec3> lower,
 
 CellScope CellBounds::inside(const CellScope& scope, const Survivors& found, size_t lane) const {
   CellScope inner;
+  inner.tree = narrowed(scope.tree, found.relevant);
   for (const size_t at : found.relevant) {
     inner.branches.push_back(scope.branches[at]);
     const SharedSteps& steps = scope.steps[at];
@@ -278,16 +227,14 @@ FieldEvaluator& BranchEvaluators::at(int branch) {
 }
 
 std::vector<size_t> relevant_branches(const SharpField& sharp, std::vector<FieldEvaluator>& evaluators, const Box& box) {
-  std::vector<int> branches(evaluators.size());
-  std::iota(branches.begin(), branches.end(), 0);
   std::vector<Interval> values;
   values.reserve(evaluators.size());
   for (FieldEvaluator& evaluator : evaluators) values.push_back(evaluator.bounds(box));
-  NodeScratch scratch;
-  find_relevant(sharp, branches, values, scratch);
+  ScopeBounds bounds;
+  find_relevant(tree_of(sharp), values, bounds);
   std::vector<size_t> result;
-  for (size_t i = 0; i < scratch.relevant.size(); ++i) {
-    if (scratch.relevant[i]) result.push_back(i);
+  for (size_t i = 0; i < bounds.relevant.size(); ++i) {
+    if (bounds.relevant[i]) result.push_back(i);
   }
   return result;
 }

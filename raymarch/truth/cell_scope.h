@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "raymarch/truth/field_cells.h"
+#include "raymarch/truth/scope_tree.h"
 #include "sdf/tape_lanes.h"
 
 namespace limn {
@@ -17,6 +18,7 @@ using SharedSteps = std::shared_ptr<const std::vector<TapeStep>>;
 struct CellScope {
   std::vector<int> branches{};
   std::vector<SharedSteps> steps{};
+  ScopeTree tree{};
 };
 
 /// Indices into a scope.
@@ -41,13 +43,6 @@ struct CellTapes {
   explicit CellTapes(const SharpField& sharp);
   std::vector<FieldTape> tapes{};
   CellScope whole{};  ///< All branches with all steps.
-};
-
-/// Bounds of nodes of a SharpField; memory of one thread.
-struct NodeScratch {
-  std::vector<Interval> bounds{};
-  std::vector<char> known{};  ///< 0 where everything below is without influence.
-  std::vector<char> relevant{};
 };
 
 struct ModelledCells;  // raymarch/truth/cell_models.h
@@ -88,7 +83,7 @@ class CellBounds {
   };
   std::vector<Bounds> bounds_{};
   std::vector<Interval> values_{};
-  NodeScratch nodes_{};
+  ScopeBounds nodes_{};
   std::vector<size_t> candidates_{};
   std::vector<std::array<Interval, kCurveFamilies>> facing_{};
 };

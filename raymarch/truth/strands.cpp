@@ -47,6 +47,7 @@ class Cutter {
       : strand_(strand), settings_(settings), evaluators_(settings.scope.evaluators()) {
     values_.resize(evaluators_.size());
     for (size_t i = 0; i < evaluators_.size(); ++i) near_.push_back(i);
+    set_changing();
     if (strand.second >= 0) intersection_ = meet_as_intersection(settings.sharp, strand.first, strand.second);
   }
 
@@ -79,6 +80,13 @@ class Cutter {
       if (branch >= 0 && std::find(near_.begin(), near_.end(), static_cast<size_t>(branch)) == near_.end())
         near_.push_back(static_cast<size_t>(branch));
     }
+    set_changing();
+  }
+
+  /// What is asked for from now on changes with the branches near by; what others have stays.
+  void set_changing() {
+    changing_ = nodes_above(settings_.sharp, near_);
+    node_values(settings_.sharp, values_, nodes_);
   }
 
   Spot spot(const CurvePoint& point) {
@@ -88,7 +96,7 @@ class Cutter {
     result.scale = pixels_per_unit_at(settings_.camera, std::max(image.z, 1e-9 * settings_.extent));
     if (evaluators_.size() > kManyBranches) look_around(point.p);
     for (const size_t i : near_) values_[i] = evaluators_[i].value(point.p);
-    node_values(settings_.sharp, values_, nodes_);
+    update_node_values(settings_.sharp, values_, changing_, nodes_);
     result.margin = surface_margin(settings_.sharp, nodes_, strand_.first, strand_.second);
     if (strand_.second >= 0) {
       result.on = describe_seam(result) && result.margin > 0.0;
@@ -325,7 +333,8 @@ class Cutter {
   const StrandSettings& settings_;
   std::vector<FieldEvaluator>& evaluators_;
   std::vector<double> values_, nodes_;
-  std::vector<size_t> near_{};  ///< Branches that are evaluated.
+  std::vector<size_t> near_{};   ///< Branches that are evaluated.
+  std::vector<int> changing_{};  ///< Nodes that change with them.
   glm::ivec3 cube_{0};
   bool looked_around_ = false;
   bool intersection_ = true;

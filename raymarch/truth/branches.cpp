@@ -173,11 +173,11 @@ void update_node_values(const SharpField& sharp, std::span<const double> branch_
   for (const int node : nodes) set_node_value(sharp, branch_values, static_cast<size_t>(node), values);
 }
 
-double surface_margin(const SharpField& sharp, std::span<const double> values, int first, int second) {
-  double margin = std::numeric_limits<double>::infinity();
+std::vector<MarginSide> margin_sides(const SharpField& sharp, int first, int second) {
   const std::vector<int> path = path_of(sharp, first);
   const std::vector<int> other = second >= 0 ? path_of(sharp, second) : std::vector<int>{};
   const int common = first_common(path, other);
+  std::vector<MarginSide> sides;
   const auto climb = [&](const std::vector<int>& from, int branch, bool beyond) {
     const double own = -outward(sharp, branch);
     for (const int node : from) {
@@ -186,13 +186,25 @@ double surface_margin(const SharpField& sharp, std::span<const double> values, i
       if (parent < 0) return;
       if (parent == common) continue;  // There the two meet.
       const SharpNode& above = sharp.nodes[static_cast<size_t>(parent)];
-      const double sibling = values[static_cast<size_t>(above.left == node ? above.right : above.left)];
-      margin = std::min(margin, above.maximum ? own - sibling : sibling - own);
+      sides.push_back({above.left == node ? above.right : above.left, above.maximum, own});
     }
   };
   climb(path, first, true);
   if (second >= 0) climb(other, second, false);
+  return sides;
+}
+
+double surface_margin(std::span<const MarginSide> sides, std::span<const double> values) {
+  double margin = std::numeric_limits<double>::infinity();
+  for (const MarginSide& side : sides) {
+    const double sibling = values[static_cast<size_t>(side.node)];
+    margin = std::min(margin, side.maximum ? side.own - sibling : sibling - side.own);
+  }
   return margin;
+}
+
+double surface_margin(const SharpField& sharp, std::span<const double> values, int first, int second) {
+  return surface_margin(margin_sides(sharp, first, second), values);
 }
 
 bool meet_as_intersection(const SharpField& sharp, int first, int second) {

@@ -42,6 +42,15 @@ std::vector<int> nodes_above(const SharpField& sharp, std::span<const size_t> br
 void update_node_values(const SharpField& sharp, std::span<const double> branch_values, std::span<const int> nodes,
                         std::vector<double>& values);
 
+/// What tells on one node of a way up the tree whether a branch's zeros are on the surface of the whole.
+struct MarginSide {
+  int node = -1;         ///< The other side's.
+  bool maximum = false;  ///< Of the two.
+  double own = 0.0;      ///< The branch's own value where it is 0, an epsilon apart.
+};
+std::vector<MarginSide> margin_sides(const SharpField& sharp, int first, int second = -1);
+double surface_margin(std::span<const MarginSide> sides, std::span<const double> values);
+
 /// Where branch `first` is 0 (and `second`, unless it is -1, as well): above 0 where that is on the surface of the whole, below where it is
 /// not. As steep as the steepest branch at most. `values` are node_values().
 double surface_margin(const SharpField& sharp, std::span<const double> values, int first, int second = -1);

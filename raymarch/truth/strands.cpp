@@ -44,7 +44,10 @@ struct Spot {
 class Cutter {
  public:
   Cutter(const Strand& strand, const StrandSettings& settings)
-      : strand_(strand), settings_(settings), evaluators_(settings.scope.evaluators()) {
+      : strand_(strand),
+        settings_(settings),
+        evaluators_(settings.scope.evaluators()),
+        sides_(margin_sides(settings.sharp, strand.first, strand.second)) {
     values_.resize(evaluators_.size());
     for (size_t i = 0; i < evaluators_.size(); ++i) near_.push_back(i);
     set_changing();
@@ -97,7 +100,7 @@ class Cutter {
     if (evaluators_.size() > kManyBranches) look_around(point.p);
     for (const size_t i : near_) values_[i] = evaluators_[i].value(point.p);
     update_node_values(settings_.sharp, values_, changing_, nodes_);
-    result.margin = surface_margin(settings_.sharp, nodes_, strand_.first, strand_.second);
+    result.margin = surface_margin(sides_, nodes_);
     if (strand_.second >= 0) {
       result.on = describe_seam(result) && result.margin > 0.0;
     } else {
@@ -332,6 +335,7 @@ class Cutter {
   const Strand& strand_;
   const StrandSettings& settings_;
   std::vector<FieldEvaluator>& evaluators_;
+  std::vector<MarginSide> sides_;
   std::vector<double> values_, nodes_;
   std::vector<size_t> near_{};   ///< Branches that are evaluated.
   std::vector<int> changing_{};  ///< Nodes that change with them.

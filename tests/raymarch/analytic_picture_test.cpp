@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include "raymarch/gbuffer/gbuffer_window.h"
 #include "tests/random_seed.h"
 #include "tests/raymarch/field_walk.h"
 #include "tests/raymarch/scenes.h"
@@ -115,6 +116,42 @@ TEST(AnalyticPictures, AreWhatWalksAlongSingleRaysSeeWhateverTheFieldAndTheCamer
   fmt::print("seed {}: {} rays, {} hits; {} otherwise, at most {:.1e} from the silhouette; hits off the surface by at most {:.1e}\n", seed,
              all.rays, all.hits, all.wrong, all.farthest_wrong, all.worst_off);
   EXPECT_GT(all.hits, all.rays / 20);
+}
+
+/// Fields side by side; now and then one without end, which is traced by itself.
+Scene random_scene(Random& random) {
+  std::vector<SceneObject> objects;
+  for (int k = random.index(3); k >= 0; --k)
+    objects.push_back(object_of(random_field(random, random.index(3)), fmt::format("field {}", k)));
+  if (random.index(8) == 0) objects.push_back(object_of(make_shape("plane"), "ground"));
+  return scene_of(std::move(objects));
+}
+
+TEST(AnalyticPictures, OfSeveralSamplesTogetherAreThoseOfEachByItself) {
+  const std::uint64_t seed = random_seed();
+  Random random(seed);
+  int hits = 0;
+  for (int k = 0; k < 120; ++k) {
+    SCOPED_TRACE(fmt::format("seed {}, picture {}", seed, k));
+    const Scene scene = random_scene(random);
+    const SceneModel model = model_of(scene);
+    const Camera camera = random_camera(random, bounds(scene));
+    std::vector<GBuffer> seen(static_cast<size_t>(2 + random.index(16)));
+    std::vector<PixelRays> rays;
+    for (GBuffer& one : seen)
+      rays.push_back({{random.uniform(-0.2, 1.2), random.uniform(-0.2, 1.2)}, {}, true, [](const TracedPixels&) {}, &one});
+    render_pixels(model, camera, {.threads = 1 + random.index(3), .tile_px = 1 + random.index(16)}, rays);
+    for (size_t i = 0; i < seen.size(); ++i) {
+      const GBuffer alone = render_gbuffer(model, camera, {.threads = 1}, rays[i].offset);
+      EXPECT_TRUE(same(seen[i], alone)) << "sample " << i << " of " << seen.size();
+      EXPECT_TRUE(seen[i].n_dot_v.pixels == alone.n_dot_v.pixels && seen[i].material.pixels == alone.material.pixels);
+      EXPECT_EQ(seen[i].turned, alone.turned);
+      hits += static_cast<int>(count_hits(alone).hits);
+    }
+    if (HasFailure()) break;
+  }
+  fmt::print("seed {}: {} hits\n", seed, hits);
+  EXPECT_GT(hits, 10'000);
 }
 
 TEST(AnalyticPictures, AreTheSameOnEverySimdTarget) {

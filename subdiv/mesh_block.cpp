@@ -77,18 +77,17 @@ class BlockFiller {
   }
 
   /// How far the number may differ between two nodes that only the potential of the border parts, and what the tree is off by.
-  static constexpr double kTreeError = 0.03;
+  static constexpr double kFarLook = 2.5, kTreeError = 0.03;
+  /// Where the number itself shapes the surface, in the smallest cubes, the tree is held to a hundredth.
+  static constexpr double kCloseLook = 3.5, kCloseError = 0.01;
+  static constexpr int kSmallestCube = 2;
 
   /// Whether all nodes within `farthest` of one where the winding is `number` are on its side, and the membrane out of their band's reach.
   /// Within the block, which no border enters, the number is a smooth potential and whole numbers: along a component's ways only the
   /// potential changes, by no more than its slope times the straight distance.
-  bool decides(double number, double farthest, double slope_bound) const {
+  bool decides(double number, double farthest, double slope_bound, double error = kTreeError) const {
     if (winding_.closed()) return true;
-    return std::abs(number - 0.5) > slope_bound * (farthest + settings_.half_width) + kTreeError;
-  }
-
-  double slope_bound(const glm::dvec3& center, double radius) const {
-    return winding_.closed() ? 0.0 : winding_.gradient_bound(center, radius + settings_.half_width);
+    return std::abs(number - 0.5) > slope_bound * (farthest + settings_.half_width) + error;
   }
 
   /// Of a closed mesh, where a straight step leads to a node of a block before this one that lies well off the surface: there its side is
@@ -122,8 +121,10 @@ class BlockFiller {
     if (component.size() <= kSmall && !triangles_.empty())
       waiting_.push_back(&component);
     else
-      settle_part(members(component), glm::ivec3(0), 8, &component);
+      settle_whole(component);
   }
+
+  void settle_whole(Component& component) { settle_part(members(component), glm::ivec3(0), 8, block_slope_bound(), &component); }
 
   /// Nodes that no clear step leads to lie very close to the surface, mostly one by one. From a node beside them in the same column, whose
   /// number is known, the triangles between lead to theirs.
@@ -135,7 +136,7 @@ class BlockFiller {
       const ColumnCrossings crossings(winding_, triangles_, {origin_, settings_.voxel_size, axis}, wanted);
       std::erase_if(waiting_, [&](Component* component) { return follow_column(crossings, axis, *component); });
     }
-    for (Component* component : waiting_) settle_part(members(*component), glm::ivec3(0), 8, component);
+    for (Component* component : waiting_) settle_whole(*component);
     waiting_.clear();
   }
 
@@ -193,53 +194,66 @@ class BlockFiller {
   }
 
   double block_slope_bound() {
-    if (block_slope_bound_ < 0.0)
-      block_slope_bound_ = slope_bound(world(0) + 3.5 * settings_.voxel_size, 3.5 * std::sqrt(3.0) * settings_.voxel_size);
+    if (winding_.closed()) return 0.0;
+    if (block_slope_bound_ < 0.0) block_slope_bound_ = winding_.gradient_bound(center_of(glm::ivec3(0), 8), bound_radius(8));
     return block_slope_bound_;
   }
+  /// Of the cube of `size` nodes at `corner`.
+  glm::dvec3 center_of(const glm::ivec3& corner, int size) const {
+    return world(0) + settings_.voxel_size * (glm::dvec3(corner) + 0.5 * (size - 1));
+  }
+  double bound_radius(int size) const { return 0.5 * (size - 1) * std::sqrt(3.0) * settings_.voxel_size + settings_.half_width; }
 
-  /// Nodes of one component in the cube of `size` nodes at `corner`. Near a hole one answer does for small cubes only.
-  void settle_part(std::span<const int> nodes, const glm::ivec3& corner, int size, Component* whole) {
+  /// Nodes of one component in the cube of `size` nodes at `corner`, where no slope is larger than `bound`. Near a hole one answer does for
+  /// small cubes only.
+  void settle_part(std::span<const int> nodes, const glm::ivec3& corner, int size, double bound, Component* whole) {
     // The farthest from the surface answers: there the number is nearest to a whole one.
     int speaker = nodes.front();
     for (const int node : nodes)
       if (distance(node) > distance(speaker)) speaker = node;
-    const double number = winding_.number(world(speaker));
+    const bool is_last = size <= kSmallestCube;
+    if (!std::isfinite(bound)) return is_last ? near_hole(nodes, {}) : settle_parts(nodes, corner, size / 2);
+    const double number = winding_.number(world(speaker), is_last ? kCloseLook : kFarLook);
     double farthest = 0.0;
     if (!winding_.closed())
       for (const int node : nodes) farthest = std::max(farthest, glm::distance(world(speaker), world(node)));
-    const double radius = 0.5 * (size - 1) * std::sqrt(3.0) * settings_.voxel_size;
-    const double bound =
-        size == 8 ? block_slope_bound() : slope_bound(world(0) + settings_.voxel_size * (glm::dvec3(corner) + 0.5 * (size - 1)), radius);
-    if (decides(number, farthest, bound)) {
+    if (decides(number, farthest, bound, is_last ? kCloseError : kTreeError)) {
       if (whole)
         tell(*whole, speaker, number);
       else
         mark(nodes, number > 0.5);
       return;
     }
-    if (size <= 2) {
-      const glm::dvec3 at = world(speaker);
-      // Close to the border the gradient turns too quickly for one node to tell of another.
-      std::optional<Potential> known;
-      if (std::isfinite(bound)) known = {at, winding_.number(at, kCloseLook), winding_.gradient(at)};
-      for (const int node : nodes) near_hole(node, known);
-      return;
-    }
-    const int half = size / 2;
+    if (is_last)
+      near_hole(nodes, Spoken{speaker, number});
+    else
+      settle_parts(nodes, corner, size / 2);
+  }
+
+  /// The eight cubes of half the size by themselves.
+  void settle_parts(std::span<const int> nodes, const glm::ivec3& corner, int half) {
+    std::array<glm::ivec3, 8> corners;
+    std::array<glm::dvec3, 8> centers;
+    std::array<double, 8> bounds{};
     for (int part = 0; part < 8; ++part) {
-      const glm::ivec3 lower = corner + half * glm::ivec3(part >> 2, (part >> 1) & 1, part & 1);
+      const auto k = static_cast<size_t>(part);
+      corners[k] = corner + half * glm::ivec3(part >> 2, (part >> 1) & 1, part & 1);
+      centers[k] = center_of(corners[k], half);
+    }
+    if (!winding_.closed()) winding_.gradient_bounds(centers, bound_radius(half), bounds);
+    for (size_t k = 0; k < 8; ++k) {
+      const glm::ivec3& lower = corners[k];
       std::vector<int> inside;
       for (const int node : nodes) {
         const glm::ivec3 at = node_at(node) - lower;
         if (glm::all(glm::greaterThanEqual(at, glm::ivec3(0))) && glm::all(glm::lessThan(at, glm::ivec3(half)))) inside.push_back(node);
       }
-      settle_joined(inside, lower, half);
+      settle_joined(inside, lower, half, bounds[k]);
     }
   }
 
   /// What hangs together in the whole block may do so around a border; in a part of it the sides can be apart.
-  void settle_joined(const std::vector<int>& nodes, const glm::ivec3& corner, int size) {
+  void settle_joined(const std::vector<int>& nodes, const glm::ivec3& corner, int size, double bound) {
     std::array<bool, kNodes> waiting{};
     for (const int node : nodes) waiting[static_cast<size_t>(node)] = true;
     for (const int first : nodes) {
@@ -253,16 +267,13 @@ class BlockFiller {
           joined.push_back(node);
         });
       }
-      settle_part(joined, corner, size, nullptr);
+      settle_part(joined, corner, size, bound, nullptr);
     }
   }
 
   void mark(std::span<const int> nodes, bool inside) {
     for (const int node : nodes) inside_[static_cast<size_t>(node)] = inside;
   }
-
-  /// Where the number itself shapes the surface the tree is held to a hundredth.
-  static constexpr double kCloseLook = 3.5;
 
   /// The winding number and its gradient at a node.
   struct Potential {
@@ -279,10 +290,28 @@ class BlockFiller {
     return straight ? known.number + 0.5 * glm::dot(gradient + known.gradient, step) : winding_.number(p);
   }
 
-  /// `known` is that of a node of the same component close by.
-  void near_hole(int node, const std::optional<Potential>& known) {
-    const glm::dvec3 p = world(node), gradient = winding_.gradient(p);
-    const double number = known ? number_near(*known, p, gradient) : winding_.number(p);
+  /// A node's number.
+  struct Spoken {
+    int node = -1;
+    double number = 0.0;
+  };
+
+  /// At most eight nodes of one component close to each other. The number at one of them tells those of the others; nothing does so close
+  /// to the border that the gradient turns too quickly.
+  void near_hole(std::span<const int> nodes, const std::optional<Spoken>& spoken) {
+    std::array<glm::dvec3, 8> places, gradients;
+    for (size_t k = 0; k < nodes.size(); ++k) places[k] = world(nodes[k]);
+    winding_.gradients(std::span(places).first(nodes.size()), std::span(gradients).first(nodes.size()));
+    std::optional<Potential> known;
+    if (spoken) {
+      const auto k = static_cast<size_t>(std::find(nodes.begin(), nodes.end(), spoken->node) - nodes.begin());
+      known = {places[k], spoken->number, gradients[k]};
+    }
+    for (size_t k = 0; k < nodes.size(); ++k)
+      near_hole(nodes[k], known ? number_near(*known, places[k], gradients[k]) : winding_.number(places[k]), gradients[k]);
+  }
+
+  void near_hole(int node, double number, const glm::dvec3& gradient) {
     const double slope = glm::length(gradient);
     const double to_triangles = distance(node);
     const double to_membrane = slope > 0.0 ? std::abs(number - 0.5) / slope : std::numeric_limits<double>::infinity();

@@ -56,6 +56,9 @@ class Winding {
   glm::dvec3 gradient(const glm::dvec3& point) const;
   /// No gradient within `radius` of `center` is longer than this.
   double gradient_bound(const glm::dvec3& center, double radius) const;
+  /// The same of several points, eight of which take little longer than one. Sizes equal.
+  void gradients(std::span<const glm::dvec3> points, std::span<glm::dvec3> out) const;
+  void gradient_bounds(std::span<const glm::dvec3> centers, double radius, std::span<double> out) const;
 
  private:
   struct Node {

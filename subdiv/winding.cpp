@@ -82,30 +82,4 @@ void Winding::find_border(std::span<const std::uint32_t> first_at) {
   }
 }
 
-glm::dvec3 Winding::gradient(const glm::dvec3& point) const {
-  glm::dvec3 sum(0.0);
-  for (const BorderEdge& edge : border_) {
-    const glm::dvec3 a = edge.a - point, b = edge.b - point;
-    const double la = glm::length(a), lb = glm::length(b);
-    const double denominator = la * lb * (la * lb + glm::dot(a, b));
-    if (denominator > 0.0) sum += static_cast<double>(edge.multiplicity) * (la + lb) / denominator * glm::cross(a, b);
-  }
-  return sum / (4.0 * std::numbers::pi);
-}
-
-// Either the border's pieces at their nearest, all pulling one way; or the gradient at the centre and as much as it can change from there,
-// the derivative of r/|r|^3 being no larger than 2/|r|^3: far from a hole its two sides cancel, and only the second bound knows.
-double Winding::gradient_bound(const glm::dvec3& center, double radius) const {
-  double largest = 0.0, change = 0.0;
-  for (const BorderEdge& edge : border_) {
-    const double length = glm::distance(edge.a, edge.b);
-    const double distance = glm::distance(center, 0.5 * (edge.a + edge.b)) - 0.5 * length - radius;
-    if (distance <= 0.0) return std::numeric_limits<double>::infinity();
-    const double weight = std::abs(edge.multiplicity) * length / (4.0 * std::numbers::pi);
-    largest += weight / (distance * distance);
-    change += 2.0 * weight / (distance * distance * distance);
-  }
-  return std::min(largest, glm::length(gradient(center)) + radius * change);
-}
-
 }  // namespace limn

@@ -15,14 +15,11 @@
 #include <vector>
 
 #include "subdiv/column_crossings.h"
+#include "subdiv/open_sides.h"
 
 namespace limn {
 namespace {
 
-constexpr int kNodes = 512;
-
-int node_index(int x, int y, int z) { return x * 64 + y * 8 + z; }
-glm::ivec3 node_at(int index) { return {index >> 6, (index >> 3) & 7, index & 7}; }
 /// Where a node's neighbour stands in BlockFace.
 size_t on_face(const glm::ivec3& at, size_t axis) {
   return static_cast<size_t>(axis == 0 ? 8 * at.y + at.z : axis == 1 ? 8 * at.x + at.z : 8 * at.x + at.y);
@@ -31,7 +28,12 @@ size_t on_face(const glm::ivec3& at, size_t axis) {
 class BlockFiller {
  public:
   BlockFiller(const glm::ivec3& origin, const BlockDistanceArray& distances, const BlockMesh& mesh, const BlockSettings& settings)
-      : origin_(origin), winding_(mesh.winding), settings_(settings), triangles_(mesh.triangles), distances_(distances) {
+      : winding_(mesh.winding),
+        settings_(settings),
+        triangles_(mesh.triangles),
+        distances_(distances),
+        nodes_{origin, settings.voxel_size, distances_},
+        open_(nodes_, winding_, settings.half_width, inside_) {
     if (mesh.filled == nullptr || !winding_.closed()) return;
     for (int axis = 0; axis < 3; ++axis) before_[static_cast<size_t>(axis)] = mesh.filled->before(origin, axis);
   }
@@ -44,8 +46,9 @@ class BlockFiller {
     joined_ = components_of(distances_, settings_.voxel_size, !winding_.closed());
     for (Component& component : joined_.components) settle(component);
     settle_by_columns();
-    for (const auto& [node, distance] : near_membrane_) distances_[static_cast<size_t>(node)] = distance;
-    for (size_t node = 0; node < kNodes; ++node)
+    for (const auto& [node, distance] : open_.near_membrane()) distances_[static_cast<size_t>(node)] = distance;
+    result_.membrane = open_.has_membrane();
+    for (size_t node = 0; node < kBlockNodes; ++node)
       if (inside_[node]) distances_[node] = -distances_[node];
     return write(block);
   }
@@ -57,39 +60,8 @@ class BlockFiller {
   using Component = BlockComponent;
   static int number_of(const Component& component) { return static_cast<int>(std::lround(component.number)); }
 
-  glm::dvec3 world(int node) const { return settings_.voxel_size * glm::dvec3(origin_ + node_at(node)); }
-  double distance(int node) const { return distances_[static_cast<size_t>(node)]; }
   std::span<const int> members(const Component& component) const { return joined_.members_of(component); }
   const Component& component_of(int node) const { return joined_.components[static_cast<size_t>(joined_.of[static_cast<size_t>(node)])]; }
-  /// Whether a straight step of `length` voxels between two nodes stays clear of all triangles.
-  bool clear_step(int from, int to, double length) const {
-    return distance(from) + distance(to) > kClearStep * length * settings_.voxel_size;
-  }
-
-  template <class Visit>
-  static void for_each_neighbour(int node, const Visit& visit) {
-    const glm::ivec3 at = node_at(node);
-    constexpr int kStrides[3] = {64, 8, 1};
-    for (int axis = 0; axis < 3; ++axis) {
-      if (at[axis] > 0) visit(node - kStrides[axis]);
-      if (at[axis] < 7) visit(node + kStrides[axis]);
-    }
-  }
-
-  /// How far the number may differ between two nodes that only the potential of the border parts, and what the tree is off by.
-  static constexpr double kFarLook = 2.5, kTreeError = 0.03;
-  /// Where the number itself shapes the surface, in the smallest cubes, the tree is held to a hundredth.
-  static constexpr double kCloseLook = 3.5, kCloseError = 0.01;
-  static constexpr int kSmallestCube = 2;
-
-  /// Whether all nodes within `farthest` of one where the winding is `number` are on its side, and the membrane out of their band's reach.
-  /// Within the block, which no border enters, the number is a smooth potential and whole numbers: along a component's ways only the
-  /// potential changes, by no more than its slope times the straight distance.
-  bool decides(double number, double farthest, double slope_bound, double error = kTreeError) const {
-    if (winding_.closed()) return true;
-    return std::abs(number - 0.5) > slope_bound * (farthest + settings_.half_width) + error;
-  }
-
   /// Of a closed mesh, where a straight step leads to a node of a block before this one that lies well off the surface: there its side is
   /// certain.
   bool follow_before(Component& component) {
@@ -100,7 +72,7 @@ class BlockFiller {
         if (at[static_cast<int>(axis)] != 0) continue;
         const size_t beside = on_face(at, axis);
         const double off = before_[axis]->distances[beside];
-        if (off < 0.5 * settings_.voxel_size || !(off + distance(node) > kClearStep * settings_.voxel_size)) continue;
+        if (off < 0.5 * settings_.voxel_size || !(off + nodes_.distance(node) > kClearStep * settings_.voxel_size)) continue;
         tell(component, node, before_[axis]->numbers[beside]);
         return true;
       }
@@ -111,7 +83,7 @@ class BlockFiller {
   /// `number` holds for all of it, as the node tells.
   void tell(Component& component, int node, double number) {
     component.speaker = node, component.number = number;
-    mark(members(component), number > 0.5);
+    for (const int each : members(component)) inside_[static_cast<size_t>(each)] = number > 0.5;
   }
 
   void settle(Component& component) {
@@ -124,7 +96,18 @@ class BlockFiller {
       settle_whole(component);
   }
 
-  void settle_whole(Component& component) { settle_part(members(component), glm::ivec3(0), 8, block_slope_bound(), &component); }
+  void settle_whole(Component& component) {
+    const std::span<const int> nodes = members(component);
+    const int speaker = nodes_.farthest_off(nodes);
+    if (winding_.closed()) return tell(component, speaker, winding_.number(nodes_.world(speaker)));
+    const double slope = open_.slope_bound();
+    if (!std::isfinite(slope)) return open_.settle(nodes);
+    const double number = winding_.number(nodes_.world(speaker), kFarLook);
+    if (open_.decides(number, nodes_.reach(speaker, nodes), slope))
+      tell(component, speaker, number);
+    else
+      open_.settle(nodes);
+  }
 
   /// Nodes that no clear step leads to lie very close to the surface, mostly one by one. From a node beside them in the same column, whose
   /// number is known, the triangles between lead to theirs.
@@ -133,7 +116,7 @@ class BlockFiller {
       std::uint64_t wanted = 0;
       for (const Component* component : waiting_)
         wanted |= std::uint64_t{1} << on_face(node_at(component->first), static_cast<size_t>(axis));
-      const ColumnCrossings crossings(winding_, triangles_, {origin_, settings_.voxel_size, axis}, wanted);
+      const ColumnCrossings crossings(winding_, triangles_, {nodes_.origin, settings_.voxel_size, axis}, wanted);
       std::erase_if(waiting_, [&](Component* component) { return follow_column(crossings, axis, *component); });
     }
     for (Component* component : waiting_) settle_whole(*component);
@@ -142,14 +125,7 @@ class BlockFiller {
 
   /// Of an open mesh the number changes smoothly, too. What the bounds then allow is decided as the node's own number would be.
   bool decides_along_column(double number, int speaker, const Component& component) {
-    if (winding_.closed()) return true;
-    return std::abs(number - 0.5) > block_slope_bound() * (farthest_from(speaker, component) + settings_.half_width) + 3.0 * kTreeError;
-  }
-
-  double farthest_from(int speaker, const Component& component) const {
-    double farthest = 0.0;
-    for (const int node : members(component)) farthest = std::max(farthest, glm::distance(world(speaker), world(node)));
-    return farthest;
+    return winding_.closed() || open_.decides(number, nodes_.reach(speaker, members(component)), open_.slope_bound(), 3.0 * kTreeError);
   }
 
   /// From the nearest nodes on either side, which have to agree.
@@ -184,8 +160,9 @@ class BlockFiller {
         if (squared < 2 || glm::any(glm::lessThan(next, glm::ivec3(0))) || glm::any(glm::greaterThan(next, glm::ivec3(7)))) continue;
         const int to = node_index(next.x, next.y, next.z);
         const Component& other = component_of(to);
-        if (other.speaker < 0 || !clear_step(from, to, std::sqrt(static_cast<double>(squared)))) continue;
-        if (!winding_.closed() && !decides(other.number, farthest_from(other.speaker, component), block_slope_bound())) continue;
+        if (other.speaker < 0 || !nodes_.clear_step(from, to, std::sqrt(static_cast<double>(squared)))) continue;
+        if (!winding_.closed() && !open_.decides(other.number, nodes_.reach(other.speaker, members(component)), open_.slope_bound()))
+          continue;
         tell(component, other.speaker, other.number);
         return true;
       }
@@ -193,139 +170,11 @@ class BlockFiller {
     return false;
   }
 
-  double block_slope_bound() {
-    if (winding_.closed()) return 0.0;
-    if (block_slope_bound_ < 0.0) block_slope_bound_ = winding_.gradient_bound(center_of(glm::ivec3(0), 8), bound_radius(8));
-    return block_slope_bound_;
-  }
-  /// Of the cube of `size` nodes at `corner`.
-  glm::dvec3 center_of(const glm::ivec3& corner, int size) const {
-    return world(0) + settings_.voxel_size * (glm::dvec3(corner) + 0.5 * (size - 1));
-  }
-  double bound_radius(int size) const { return 0.5 * (size - 1) * std::sqrt(3.0) * settings_.voxel_size + settings_.half_width; }
-
-  /// Nodes of one component in the cube of `size` nodes at `corner`, where no slope is larger than `bound`. Near a hole one answer does for
-  /// small cubes only.
-  void settle_part(std::span<const int> nodes, const glm::ivec3& corner, int size, double bound, Component* whole) {
-    // The farthest from the surface answers: there the number is nearest to a whole one.
-    int speaker = nodes.front();
-    for (const int node : nodes)
-      if (distance(node) > distance(speaker)) speaker = node;
-    const bool is_last = size <= kSmallestCube;
-    if (!std::isfinite(bound)) return is_last ? near_hole(nodes, {}) : settle_parts(nodes, corner, size / 2);
-    const double number = winding_.number(world(speaker), is_last ? kCloseLook : kFarLook);
-    double farthest = 0.0;
-    if (!winding_.closed())
-      for (const int node : nodes) farthest = std::max(farthest, glm::distance(world(speaker), world(node)));
-    if (decides(number, farthest, bound, is_last ? kCloseError : kTreeError)) {
-      if (whole)
-        tell(*whole, speaker, number);
-      else
-        mark(nodes, number > 0.5);
-      return;
-    }
-    if (is_last)
-      near_hole(nodes, Spoken{speaker, number});
-    else
-      settle_parts(nodes, corner, size / 2);
-  }
-
-  /// The eight cubes of half the size by themselves.
-  void settle_parts(std::span<const int> nodes, const glm::ivec3& corner, int half) {
-    std::array<glm::ivec3, 8> corners;
-    std::array<glm::dvec3, 8> centers;
-    std::array<double, 8> bounds{};
-    for (int part = 0; part < 8; ++part) {
-      const auto k = static_cast<size_t>(part);
-      corners[k] = corner + half * glm::ivec3(part >> 2, (part >> 1) & 1, part & 1);
-      centers[k] = center_of(corners[k], half);
-    }
-    if (!winding_.closed()) winding_.gradient_bounds(centers, bound_radius(half), bounds);
-    for (size_t k = 0; k < 8; ++k) {
-      const glm::ivec3& lower = corners[k];
-      std::vector<int> inside;
-      for (const int node : nodes) {
-        const glm::ivec3 at = node_at(node) - lower;
-        if (glm::all(glm::greaterThanEqual(at, glm::ivec3(0))) && glm::all(glm::lessThan(at, glm::ivec3(half)))) inside.push_back(node);
-      }
-      settle_joined(inside, lower, half, bounds[k]);
-    }
-  }
-
-  /// What hangs together in the whole block may do so around a border; in a part of it the sides can be apart.
-  void settle_joined(const std::vector<int>& nodes, const glm::ivec3& corner, int size, double bound) {
-    std::array<bool, kNodes> waiting{};
-    for (const int node : nodes) waiting[static_cast<size_t>(node)] = true;
-    for (const int first : nodes) {
-      if (!waiting[static_cast<size_t>(first)]) continue;
-      std::vector<int> joined{first};
-      waiting[static_cast<size_t>(first)] = false;
-      for (size_t i = 0; i < joined.size(); ++i) {
-        for_each_neighbour(joined[i], [&](int node) {
-          if (!waiting[static_cast<size_t>(node)] || !clear_step(joined[i], node, 1.0)) return;
-          waiting[static_cast<size_t>(node)] = false;
-          joined.push_back(node);
-        });
-      }
-      settle_part(joined, corner, size, bound, nullptr);
-    }
-  }
-
-  void mark(std::span<const int> nodes, bool inside) {
-    for (const int node : nodes) inside_[static_cast<size_t>(node)] = inside;
-  }
-
-  /// The winding number and its gradient at a node.
-  struct Potential {
-    glm::dvec3 at{0.0};
-    double number = 0.0;
-    glm::dvec3 gradient{0.0};
-  };
-
-  /// The trapezium rule along the step, where the gradient changes so little that it is as good as the tree.
-  double number_near(const Potential& known, const glm::dvec3& p, const glm::dvec3& gradient) const {
-    constexpr double kStraight = 0.01;
-    const glm::dvec3 step = p - known.at;
-    const bool straight = glm::length(gradient - known.gradient) * glm::length(step) < kStraight;
-    return straight ? known.number + 0.5 * glm::dot(gradient + known.gradient, step) : winding_.number(p);
-  }
-
-  /// A node's number.
-  struct Spoken {
-    int node = -1;
-    double number = 0.0;
-  };
-
-  /// At most eight nodes of one component close to each other. The number at one of them tells those of the others; nothing does so close
-  /// to the border that the gradient turns too quickly.
-  void near_hole(std::span<const int> nodes, const std::optional<Spoken>& spoken) {
-    std::array<glm::dvec3, 8> places, gradients;
-    for (size_t k = 0; k < nodes.size(); ++k) places[k] = world(nodes[k]);
-    winding_.gradients(std::span(places).first(nodes.size()), std::span(gradients).first(nodes.size()));
-    std::optional<Potential> known;
-    if (spoken) {
-      const auto k = static_cast<size_t>(std::find(nodes.begin(), nodes.end(), spoken->node) - nodes.begin());
-      known = {places[k], spoken->number, gradients[k]};
-    }
-    for (size_t k = 0; k < nodes.size(); ++k)
-      near_hole(nodes[k], known ? number_near(*known, places[k], gradients[k]) : winding_.number(places[k]), gradients[k]);
-  }
-
-  void near_hole(int node, double number, const glm::dvec3& gradient) {
-    const double slope = glm::length(gradient);
-    const double to_triangles = distance(node);
-    const double to_membrane = slope > 0.0 ? std::abs(number - 0.5) / slope : std::numeric_limits<double>::infinity();
-    if (to_membrane < settings_.half_width && to_membrane < to_triangles) result_.membrane = true;
-    // Other components still ask for the distance to the triangles; `near_membrane_` waits until all are settled.
-    near_membrane_.push_back({node, std::min(to_triangles, to_membrane)});
-    inside_[static_cast<size_t>(node)] = number > 0.5;
-  }
-
   BlockResult write(LevelSetBlock& block) {
-    block.origin = origin_;
+    block.origin = nodes_.origin;
     std::fill(std::begin(block.active), std::end(block.active), std::uint64_t{0});
     const double limit = settings_.half_width;
-    for (int node = 0; node < kNodes; ++node) {
+    for (int node = 0; node < kBlockNodes; ++node) {
       const double value = distances_[static_cast<size_t>(node)];
       block.values[node] = static_cast<float>(std::clamp(value, -limit, limit));
       result_.any_inside |= value < 0.0;
@@ -336,17 +185,16 @@ class BlockFiller {
     return result_;
   }
 
-  glm::ivec3 origin_;
   const Winding& winding_;
   const BlockSettings& settings_;
   std::span<const std::uint32_t> triangles_;
   std::array<const BlockFace*, 3> before_{};  ///< Null where the block there is not known.
-  double block_slope_bound_ = -1.0;           ///< Below 0: not asked for yet.
   BlockDistanceArray distances_;
-  std::array<bool, kNodes> inside_{};
+  BlockNodes nodes_;
+  std::array<bool, kBlockNodes> inside_{};
+  OpenSides open_;  ///< Of an open mesh.
   BlockComponents joined_;
-  std::vector<Component*> waiting_;                    ///< Small ones that have no answer yet.
-  std::vector<std::pair<int, double>> near_membrane_;  ///< Nodes, and their distances once the continuation over holes counts.
+  std::vector<Component*> waiting_;  ///< Small ones that have no answer yet.
   BlockResult result_;
 };
 
@@ -355,8 +203,8 @@ class BlockFiller {
 /// Neighbouring nodes bound each other's search; nodes out of reach hold infinity.
 void measure_block(const glm::ivec3& origin, const ClosestPointData& distance, double voxel_size, double reach,
                    BlockDistanceArray& distances) {
-  std::array<std::uint32_t, kNodes> closest_triangles{};  // where the distance is finite
-  for (int node = 0; node < kNodes; ++node) {
+  std::array<std::uint32_t, kBlockNodes> closest_triangles{};  // where the distance is finite
+  for (int node = 0; node < kBlockNodes; ++node) {
     double radius = reach;
     // What is closest to a neighbour is nearly closest here.
     std::array<std::uint32_t, 3> likely{};

@@ -1,0 +1,66 @@
+#pragma once
+// Internal: on which side of an open mesh the nodes of a block lie.
+
+#include <array>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "subdiv/block_nodes.h"
+#include "subdiv/mesh_distance.h"
+
+namespace limn {
+
+/// What the tree of winding numbers is off by, as it is asked for far from holes; and, held to a hundredth, where the number itself shapes
+/// the surface.
+inline constexpr double kFarLook = 2.5, kTreeError = 0.03, kCloseLook = 3.5, kCloseError = 0.01;
+
+/// Near the holes of a mesh its winding number changes smoothly. Bounds of its slope tell how far one node speaks for others; where they
+/// say too little, cubes of half the size are looked at by themselves, and in the smallest ones each node.
+class OpenSides {
+ public:
+  /// `inside` becomes true of nodes that are found to be.
+  OpenSides(const BlockNodes& nodes, const Winding& winding, double half_width, std::array<bool, kBlockNodes>& inside)
+      : nodes_(nodes), winding_(winding), half_width_(half_width), inside_(inside) {}
+
+  /// No slope within the block and in reach of its nodes is larger.
+  double slope_bound();
+  /// Whether all nodes within `reach` of one where the winding is `number` are on its side, and the membrane out of their band's reach.
+  /// Within the block, which no border enters, the number is a smooth potential and whole numbers: along a component's ways only the
+  /// potential changes, by no more than its slope times the straight distance.
+  bool decides(double number, double reach, double slope, double error = kTreeError) const;
+  /// Nodes of one component of the block, for which no single one speaks.
+  void settle(std::span<const int> nodes) { settle_parts(nodes, glm::ivec3(0), 4); }
+
+  /// Nodes, and their distances once the continuation over holes counts.
+  const std::vector<std::pair<int, double>>& near_membrane() const { return near_membrane_; }
+  /// The continuation over a hole runs through the block or near by.
+  bool has_membrane() const { return has_membrane_; }
+
+ private:
+  /// The winding number at a node, and its gradient there.
+  struct Potential {
+    int node = -1;
+    double number = 0.0;
+    glm::dvec3 gradient{0.0};
+  };
+
+  glm::dvec3 center_of(const glm::ivec3& corner, int size) const;
+  double bound_radius(int size) const;
+  void settle_parts(std::span<const int> nodes, const glm::ivec3& corner, int half);
+  void settle_joined(const std::vector<int>& nodes, const glm::ivec3& corner, int size, double slope);
+  void settle_part(std::span<const int> nodes, const glm::ivec3& corner, int size, double slope);
+  double number_near(const Potential& known, int node, const glm::dvec3& gradient) const;
+  void near_hole(std::span<const int> nodes, const Potential* known);
+  void near_hole(int node, double number, const glm::dvec3& gradient);
+
+  BlockNodes nodes_;
+  const Winding& winding_;
+  double half_width_;
+  std::array<bool, kBlockNodes>& inside_;
+  double slope_bound_ = -1.0;  ///< Below 0: not asked for yet.
+  std::vector<std::pair<int, double>> near_membrane_{};
+  bool has_membrane_ = false;
+};
+
+}  // namespace limn

@@ -10,14 +10,40 @@
 namespace limn {
 namespace {
 
-/// Signed solid angle over 4 pi (van Oosterom & Strackee 1983).
-double triangle_winding(const glm::dvec3& p, const glm::dvec3& first, const glm::dvec3& second, const glm::dvec3& third) {
+/// An angle from -pi to pi, as a complex number of any length.
+struct Turn {
+  double along = 1.0, across = 0.0;
+  double angle() const { return std::atan2(across, along); }
+};
+
+/// Half a triangle's signed solid angle (van Oosterom & Strackee 1983).
+Turn half_solid_angle(const glm::dvec3& p, const glm::dvec3& first, const glm::dvec3& second, const glm::dvec3& third) {
   const glm::dvec3 a = first - p, b = second - p, c = third - p;
   const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
-  const double numerator = glm::dot(a, glm::cross(b, c));
-  const double denominator = la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb;
-  return std::atan2(numerator, denominator) / (2.0 * std::numbers::pi);
+  return {la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb, glm::dot(a, glm::cross(b, c))};
 }
+
+/// A sum of a few angles: their product, and how often it went round. An arctangent takes longer than all the rest of a triangle.
+class AngleSum {
+ public:
+  void add(const Turn& turn) {
+    // On a corner or an edge there is none.
+    if (turn.along == 0.0 && turn.across == 0.0) return;
+    const Turn next{product_.along * turn.along - product_.across * turn.across,
+                    product_.along * turn.across + product_.across * turn.along};
+    const bool left = product_.across >= 0.0 && turn.across >= 0.0, right = product_.across < 0.0 && turn.across < 0.0;
+    if (left && next.across < 0.0) ++rounds_;
+    if (right && next.across >= 0.0) --rounds_;
+    // Of meshes of any size the product stays a number.
+    const double size = std::max(std::abs(next.along), std::abs(next.across)), scale = size > 1e100 || size < 1e-100 ? 1.0 / size : 1.0;
+    product_ = {scale * next.along, scale * next.across};
+  }
+  double angle() const { return product_.angle() + 2.0 * std::numbers::pi * rounds_; }
+
+ private:
+  Turn product_{};
+  int rounds_ = 0;
+};
 
 }  // namespace
 
@@ -36,11 +62,17 @@ double Winding::number(const glm::dvec3& point, double far) const {
     if (squared > far * far * node.radius * node.radius) {
       sum += glm::dot(away, node.dipole) / (4.0 * std::numbers::pi * squared * std::sqrt(squared));
     } else if (node.left == 0) {
+      AngleSum halves;
+      double repeated = 0.0;
       for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
         const std::uint32_t t = order_[i];
-        const double own = triangle_winding(point, corner(t, 0), corner(t, 1), corner(t, 2));
-        sum += times_.empty() ? own : static_cast<double>(times_[t]) * own;
+        const Turn half = half_solid_angle(point, corner(t, 0), corner(t, 1), corner(t, 2));
+        if (times(t) == 1)
+          halves.add(half);
+        else
+          repeated += times(t) * half.angle();
       }
+      sum += (halves.angle() + repeated) / (2.0 * std::numbers::pi);
     } else {
       stack[depth++] = node.right;
       stack[depth++] = node.left;

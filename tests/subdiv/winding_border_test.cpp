@@ -86,19 +86,20 @@ TEST(WindingBorder, BoundsHoldAllOverABallAndAreFiniteWhereItDoesNotTouchTheBord
       const double away = distance_to_border(winding, center);
       if (std::abs(away - radius) < 1e-9) continue;
       EXPECT_EQ(std::isfinite(bounds[i]), away > radius) << "center " << i;
-      if (!std::isfinite(bounds[i])) continue;
+      // Closer to an edge gradients themselves have fewer digits.
+      if (!std::isfinite(bounds[i]) || away - radius < 1e-4) continue;
       ++finite;
       for (const Winding::BorderEdge& edge : winding.border()) {
         const glm::dvec3 nearest = closest_on_segment(center, edge.a, edge.b), way = nearest - center;
         const glm::dvec3 q = center + radius / glm::length(way) * way;  // where this piece pulls most
         const double slope = glm::length(winding.gradient(q));
-        EXPECT_LE(slope, bounds[i] * (1.0 + 1e-12)) << "center " << i;
+        EXPECT_LE(slope, bounds[i] * (1.0 + 1e-7)) << "center " << i;
         closest = std::max(closest, slope / bounds[i]);
         beside_long_edges += away < 0.5 * glm::distance(edge.a, edge.b);
       }
       for (int trial = 0; trial < 10; ++trial) {
         const glm::dvec3 q = center + radius * std::cbrt(random.uniform(0.0, 1.0)) * random.direction();
-        EXPECT_LE(glm::length(winding.gradient(q)), bounds[i] * (1.0 + 1e-12)) << "center " << i;
+        EXPECT_LE(glm::length(winding.gradient(q)), bounds[i] * (1.0 + 1e-7)) << "center " << i;
       }
     }
     if (HasFailure()) break;
@@ -129,6 +130,29 @@ TEST(WindingBorder, TheTreeIsOffByNoMoreThanSaid) {
   fmt::print("seed {}: off by at most {:.4f}, close by {:.4f}\n", seed, far, close);
   EXPECT_LT(far, 0.03);
   EXPECT_LT(close, 0.01);
+}
+
+TEST(Winding, IsTheSumOfAllTrianglesAtAnyScale) {
+  const std::uint64_t seed = random_seed();
+  SCOPED_TRACE(fmt::format("seed {}", seed));
+  Random random(seed);
+  int whole = 0;
+  for (int k = 0; k < 60; ++k) {
+    TriangleMesh mesh = k % 2 == 0 ? random_soup(random) : triangulate(sphere(2), NormalKind::flat);
+    const double scale = std::ldexp(1.0, 40 * (random.index(9) - 4));
+    TriangleMesh scaled = mesh;
+    for (glm::dvec3& p : scaled.positions) p *= scale;
+    const Winding winding(scaled);
+    for (int i = 0; i < 40; ++i) {
+      // Corners, too, where a triangle has no solid angle, and places within faces that others share.
+      const glm::dvec3 p =
+          i % 8 == 0 ? mesh.positions[static_cast<size_t>(random.index(static_cast<int>(mesh.positions.size())))] : random.point(1.2);
+      const double exact = exact_winding(mesh, p);
+      EXPECT_NEAR(winding.number(scale * p, 1e9), exact, 1e-9) << "mesh " << k << ", scale " << scale;
+      whole += std::abs(exact) > 0.99;
+    }
+  }
+  EXPECT_GT(whole, 20);
 }
 
 TEST(WindingBorder, IsTheSameOnEverySimdTarget) {

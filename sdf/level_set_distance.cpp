@@ -78,7 +78,8 @@ void signed_distances(DistanceEvaluator& distance, const LanePoints& points, dou
     for (size_t k = first; reasonable[first / 16] != 0xffffu && k < end; ++k) {
       // Far out by its first-order estimate as well, it is not worth the iteration.
       if (flag_of(reasonable, k) || near.no_less[k] >= half_width) continue;
-      const double size = projected_distance(evaluator, near.points.point(k), near.no_less[k], std::abs(estimates[k]));
+      const double size = projected_distance(distance.projects ? *distance.projects : evaluator, near.points.point(k), near.no_less[k],
+                                             std::abs(estimates[k]));
       estimates[k] = std::copysign(size, near.value[k]);
     }
     for (size_t k = first; k < end; ++k) distances[near.index[k]] = estimates[k];

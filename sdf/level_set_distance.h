@@ -28,6 +28,8 @@ struct DistanceEvaluator {
   std::optional<FieldTape> tape{};  ///< Made where it is needed first.
   bool has_bits_of_field = false;   ///< Of the tape, where there is one.
   TapeScratch scratch{};
+  /// Of a field that `evaluator`'s is a part of, for places outside that part; null: there are none.
+  FieldEvaluator* projects = nullptr;
 };
 
 /// Makes it one of this field, if it is not: neighbouring blocks often share a field, and so what evaluates it. The memory that one field

@@ -3,9 +3,9 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include "raymarch/analytic/clip_ray.h"
+#include "raymarch/surface/cell_distances.h"
 #include "raymarch/surface/offset.h"
 #include "raymarch/surface/shell_lanes.h"
-#include "sdf/level_set_distance.h"
 
 namespace limn {
 namespace {
@@ -16,21 +16,27 @@ constexpr double kTouch = 1e-3;
 constexpr double kLeast = 1.0 / 32.0;
 
 struct State {
-  State(const Field& render_field, const OffsetWidth& w, int steps) : field(render_field), width(w), max_steps(steps), evaluators(field) {}
+  State(const Field& render_field, const OffsetWidth& w, int steps) : field(render_field), width(w), max_steps(steps) {}
   Field field;
   OffsetWidth width;
   int max_steps;
   double largest_width = 0.0;
   Box clip{};
-  mutable tbb::enumerable_thread_specific<DistanceEvaluator> evaluators;
+  mutable tbb::enumerable_thread_specific<std::optional<CellDistances>> distances{};
+
+  CellDistances& own_distances() const {
+    std::optional<CellDistances>& own = distances.local();
+    if (!own) own.emplace(field, clip);
+    return *own;
+  }
 };
 
-void write_hits(FieldEvaluator& evaluator, const FoundLanes& found, const RayBatch& rays, HitBatch& hits) {
+void write_hits(CellDistances& distance, const FoundLanes& found, const RayBatch& rays, HitBatch& hits) {
   for (size_t k = 0; k < found.count; ++k) {
     const auto& [i, t, side] = found.lanes[k];
     if (!(static_cast<float>(t) < rays.t_max[i])) continue;
     const glm::dvec3 origin(rays.origin(i)), direction(rays.direction(i));
-    const glm::dvec3 gradient = evaluator.jet(origin + t * direction).gradient;
+    const glm::dvec3 gradient = distance.jet(origin + t * direction).gradient;
     const double length = glm::length(gradient);
     const glm::vec3 normal(length > 0.0 && std::isfinite(length) ? gradient / length : -side * direction);
     hits.status[i] = HitStatus::hit;
@@ -62,7 +68,7 @@ void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
   FoundLanes found;
   LanePoints points;
   LaneNumbers distances;
-  DistanceEvaluator& distance = state.evaluators.local();
+  CellDistances& distance = state.own_distances();
   ShellSteps how{.width = state.width,
                  .touch = kTouch,
                  .least = kLeast,
@@ -71,10 +77,10 @@ void trace(const void* opaque, const RayBatch& rays, HitBatch& hits) {
   for (int step = 1; lanes.count > 0; ++step) {
     how.are_the_last = step > state.max_steps;
     place_lanes(lanes, points);
-    signed_distances(distance, points, 2.0 * state.largest_width, distances);
+    distance.find(points, 2.0 * state.largest_width, distances);
     advance_lanes(how, points, distances, lanes, found);
   }
-  write_hits(distance.evaluator, found, rays, hits);
+  write_hits(distance, found, rays, hits);
 }
 
 std::vector<Box> where_met(const void* opaque, const MeetingRequest& request) {

@@ -20,8 +20,8 @@ void load_block(const RayBatch& rays, int first, const glm::dvec3& eye, const gl
 /// start behind the depth `from`.
 unsigned stretches_between(const RayBlock& block, double z0, double z1, double from, LaneArray& a, LaneArray& b, unsigned& late);
 
-/// Where another sample's ray through the same pixel has hit, as that block of its batch has it, the root in `t` becomes the place where the
-/// plane that touches the surface there is met. Elsewhere it stays.
+/// Where another sample's ray through the same pixel has hit, as that block of its batch has it, the root in `t` becomes the place where
+/// the plane that touches the surface there is met. Elsewhere it stays.
 void guess_from_hits(const LaneRays& rays, const SampleHits& other, int first, LaneArray& t);
 
 /// First roots of a function that, times `sign`, is positive at a and falls all the way to b: Newton's steps from `t`, kept within the

@@ -92,7 +92,7 @@ std::vector<PassLayers> layers_in(const Shared& shared, const PixelTile& row, Ta
   std::vector<PassLayers> layers;
   for (size_t k = 0; k < passes; ++k) {
     const Pass& pass = shared.passes[k];
-    PassLayers& one = layers.emplace_back(tile_writer(shared.model, shared.rays, *pass.out));
+    PassLayers& one = layers.emplace_back(PassLayers{tile_writer(shared.model, shared.rays, *pass.out)});
     if (pass.use.layers == nullptr) continue;
     size_layers(*pass.use.layers, row.width, row.height, own.layers[k]);
     one.writer.out = &own.layers[k];

@@ -140,7 +140,7 @@ std::vector<std::int32_t> turned_ids(const ModelView& view) {
   return ids;
 }
 
-/// Of each task all passes, those of one after the other.
+/// Of each task all passes, group by group.
 void render_tasks(const std::vector<Shared>& groups, const PixelTile& window, const ExecutionSettings& how) {
   const int task_px = kTilesInARow * how.tile_px;
   const int columns = (window.width + task_px - 1) / task_px, rows = (window.height + how.tile_px - 1) / how.tile_px;

@@ -176,9 +176,11 @@ HWY_INLINE void write_vector(Reals t, const Reals* normal, unsigned bits, const 
   if (lane) lane += at;
   first += at;
   store_some(t, bits, lane, first, hits.t);
-  store_some(normal[0], bits, lane, first, hits.normal_x);
-  store_some(normal[1], bits, lane, first, hits.normal_y);
-  store_some(normal[2], bits, lane, first, hits.normal_z);
+  // What is pruned from a tape may change the sign of a zero: all are 0 here, none -0.
+  const Reals zero = reals(0.0);
+  store_some(normal[0] + zero, bits, lane, first, hits.normal_x);
+  store_some(normal[1] + zero, bits, lane, first, hits.normal_y);
+  store_some(normal[2] + zero, bits, lane, first, hits.normal_z);
   for (int i = 0; i < kWidth; ++i) {
     if (!(bits >> i & 1u)) continue;
     const int k = lane ? lane[i] : first + i;

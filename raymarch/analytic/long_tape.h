@@ -9,7 +9,7 @@ namespace limn {
 inline constexpr size_t kLongTape = 8;
 
 /// What isolate() and then polish() do, with a tape pruned for sixteen stretches at a time: neighbouring rays are best next to each other.
-/// The same hits, to the last bit but for the signs of zeros. `list` is used up.
+/// The same hits, to the last bit. `list` is used up.
 void isolate_in_parts(const FieldTape& tape, const MarchLimits& limits, const RayBatch& rays, ViewScratch& scratch, StretchList& list,
                       HitBatch& hits);
 

@@ -236,17 +236,18 @@ class Numbers(TestCase):
         self.assertTrue(keys[0].isdisjoint(keys[2]))
 
     def test_plans_choose_the_same(self):
-        words = ["plan", "ellipsoid", "--tolerance", "0.5", "--surface", "level_set", *SIZE, "--json"]
+        # Of this tolerance one level set is cheaper than all others by a sixth and more, in a process that starts and in one that has run.
+        words = ["plan", "ellipsoid", "--tolerance", "0.1", "--surface", "level_set", *SIZE, "--json"]
         # What is cheapest is a matter of times, which a busy machine may measure otherwise the next moment.
         for _ in range(8):
             expected = json.loads(self.program(*words))
-            plan = limn.plan("ellipsoid", tolerance=0.5, surfaces="level_set", **MADE)
+            plan = limn.plan("ellipsoid", tolerance=0.1, surfaces="level_set", **MADE)
             if expected["chosen"]["parameters"] == plan.chosen["parameters"]:
                 break
         for name in ("tolerance_px", "metric", "threshold", "truth", "measured_px", "predicted_px", "bytes", "floor_px", "doubt"):
             self.assertEqual(expected[name], plan[name], name)
         self.assertEqual(expected["chosen"]["parameters"], plan.chosen["parameters"])
-        self.assertLessEqual(limn.measure("ellipsoid", **plan.settings, **MADE)["border_error_p95"], 0.5)
+        self.assertLessEqual(limn.measure("ellipsoid", **plan.settings, **MADE)["border_error_p95"], 0.1)
 
     def test_a_plan_of_local_models_draws_and_measures_what_it_chose(self):
         small = dict(size=(300, 300))

@@ -3,6 +3,8 @@
 
 #include <fmt/core.h>
 
+#include <cstring>
+
 #include "raymarch/gbuffer/gbuffer_window.h"
 #include "tests/random_seed.h"
 #include "tests/raymarch/field_walk.h"
@@ -118,6 +120,10 @@ TEST(AnalyticPictures, AreWhatWalksAlongSingleRaysSeeWhateverTheFieldAndTheCamer
   EXPECT_GT(all.hits, all.rays / 20);
 }
 
+bool same_bits(const Image<glm::vec3>& a, const Image<glm::vec3>& b) {
+  return a.pixels.size() == b.pixels.size() && std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec3)) == 0;
+}
+
 /// Fields side by side; now and then one without end, which is traced by itself.
 Scene random_scene(Random& random) {
   std::vector<SceneObject> objects;
@@ -144,6 +150,7 @@ TEST(AnalyticPictures, OfSeveralSamplesTogetherAreThoseOfEachByItself) {
     for (size_t i = 0; i < seen.size(); ++i) {
       const GBuffer alone = render_gbuffer(model, camera, {.threads = 1}, rays[i].offset);
       EXPECT_TRUE(same(seen[i], alone)) << "sample " << i << " of " << seen.size();
+      EXPECT_TRUE(same_bits(seen[i].normal, alone.normal)) << "sample " << i << ": signs of zeros";
       EXPECT_TRUE(seen[i].n_dot_v.pixels == alone.n_dot_v.pixels && seen[i].material.pixels == alone.material.pixels);
       EXPECT_EQ(seen[i].turned, alone.turned);
       hits += static_cast<int>(count_hits(alone).hits);

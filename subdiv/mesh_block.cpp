@@ -1,9 +1,7 @@
 // One block of a mesh's level set. The sign is the generalised winding number above one half, but it is asked for as seldom as possible:
 // a straight step from p to q of length h cannot meet a triangle while d(p) + d(q) > h, so nodes joined by such steps lie on one side, and
 // one of them answers for all; small groups close to the surface follow a slanting step, or a column of nodes through the triangles
-// between, each of which changes the number by one. Near the holes of an open mesh the number changes smoothly through one half; there
-// every node is asked, and the surface {w = 1/2}, which closes the hole, counts as surface with its distance to first order,
-// |w - 1/2| / |grad w|.
+// between, each of which changes the number by one. Near the holes of an open mesh there is more to it (OpenSides).
 #include "subdiv/mesh_block.h"
 
 #include <algorithm>
@@ -62,6 +60,7 @@ class BlockFiller {
 
   std::span<const int> members(const Component& component) const { return joined_.members_of(component); }
   const Component& component_of(int node) const { return joined_.components[static_cast<size_t>(joined_.of[static_cast<size_t>(node)])]; }
+
   /// Of a closed mesh, where a straight step leads to a node of a block before this one that lies well off the surface: there its side is
   /// certain.
   bool follow_before(Component& component) {
@@ -102,7 +101,7 @@ class BlockFiller {
     if (winding_.closed()) return tell(component, speaker, winding_.number(nodes_.world(speaker)));
     const double slope = open_.slope_bound();
     if (!std::isfinite(slope)) return open_.settle(nodes);
-    const double number = winding_.number(nodes_.world(speaker), kFarLook);
+    const double number = winding_.number(nodes_.world(speaker));
     if (open_.decides(number, nodes_.reach(speaker, nodes), slope))
       tell(component, speaker, number);
     else
@@ -125,7 +124,8 @@ class BlockFiller {
 
   /// Of an open mesh the number changes smoothly, too. What the bounds then allow is decided as the node's own number would be.
   bool decides_along_column(double number, int speaker, const Component& component) {
-    return winding_.closed() || open_.decides(number, nodes_.reach(speaker, members(component)), open_.slope_bound(), 3.0 * kTreeError);
+    return winding_.closed() ||
+           open_.decides(number, nodes_.reach(speaker, members(component)), open_.slope_bound(), 3.0 * Winding::kFarError);
   }
 
   /// From the nearest nodes on either side, which have to agree.

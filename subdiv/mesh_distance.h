@@ -39,8 +39,10 @@ class Winding {
   explicit Winding(const TriangleMesh& mesh);
   Winding(const TriangleMesh& mesh, std::span<const std::uint32_t> first_at, std::vector<std::int32_t> times = {});
 
-  /// Clusters count as dipoles beyond `far` of their radii: 2.5 errs by less than 0.03, twice as far by a fraction of it.
-  double number(const glm::dvec3& point, double far = 2.5) const;
+  /// How far, in radii of clusters, is far, and how close; and by how much the number errs then, at most.
+  static constexpr double kFarLook = 2.5, kFarError = 0.03, kCloseLook = 3.5, kCloseError = 0.01;
+  /// Clusters count as dipoles beyond `far` of their radii.
+  double number(const glm::dvec3& point, double far = kFarLook) const;
 
   /// A stretch of the surface's border (corners welded by position, opposite uses cancelled), `multiplicity` times over.
   struct BorderEdge {

@@ -82,8 +82,8 @@ void OpenSides::settle_part(std::span<const int> nodes, const glm::ivec3& corner
   // So close to the border no node tells of another.
   if (!std::isfinite(slope)) return is_last ? near_hole(nodes, nullptr) : settle_parts(nodes, corner, size / 2);
   const int speaker = nodes_.farthest_off(nodes);
-  const double number = winding_.number(nodes_.world(speaker), is_last ? kCloseLook : kFarLook);
-  if (decides(number, nodes_.reach(speaker, nodes), slope, is_last ? kCloseError : kTreeError)) {
+  const double number = winding_.number(nodes_.world(speaker), is_last ? Winding::kCloseLook : Winding::kFarLook);
+  if (decides(number, nodes_.reach(speaker, nodes), slope, is_last ? Winding::kCloseError : Winding::kFarError)) {
     for (const int node : nodes) inside_[static_cast<size_t>(node)] = number > 0.5;
     return;
   }

@@ -11,12 +11,9 @@
 
 namespace limn {
 
-/// What the tree of winding numbers is off by, as it is asked for far from holes; and, held to a hundredth, where the number itself shapes
-/// the surface.
-inline constexpr double kFarLook = 2.5, kTreeError = 0.03, kCloseLook = 3.5, kCloseError = 0.01;
-
-/// Near the holes of a mesh its winding number changes smoothly. Bounds of its slope tell how far one node speaks for others; where they
-/// say too little, cubes of half the size are looked at by themselves, and in the smallest ones each node.
+/// Near the holes of a mesh its winding number changes smoothly through one half. Bounds of its slope tell how far one node speaks for
+/// others; where they say too little, cubes of half the size are looked at by themselves. In the smallest ones each node is, and the
+/// surface {w = 1/2}, which closes the hole, counts as surface with its distance to first order, |w - 1/2| / |grad w|.
 class OpenSides {
  public:
   /// `inside` becomes true of nodes that are found to be.
@@ -28,7 +25,7 @@ class OpenSides {
   /// Whether all nodes within `reach` of one where the winding is `number` are on its side, and the membrane out of their band's reach.
   /// Within the block, which no border enters, the number is a smooth potential and whole numbers: along a component's ways only the
   /// potential changes, by no more than its slope times the straight distance.
-  bool decides(double number, double reach, double slope, double error = kTreeError) const;
+  bool decides(double number, double reach, double slope, double error = Winding::kFarError) const;
   /// Nodes of one component of the block, for which no single one speaks.
   void settle(std::span<const int> nodes) { settle_parts(nodes, glm::ivec3(0), 4); }
 

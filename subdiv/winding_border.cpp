@@ -12,107 +12,95 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "sdf/lane_real-inl.h"
+
 HWY_BEFORE_NAMESPACE();
-namespace limn::HWY_NAMESPACE {
+namespace limn {
+namespace HWY_NAMESPACE {
 namespace {
-namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::CappedTag<double, 8>;
-using V = hn::Vec<D>;
-
-HWY_INLINE V set(double v) { return hn::Set(D(), v); }
-
-struct V3 {
-  V x, y, z;
+struct Reals3 {
+  Reals x, y, z;
 };
-HWY_INLINE V3 set(const glm::dvec3& v) { return {set(v.x), set(v.y), set(v.z)}; }
-HWY_INLINE V3 load(const EightPoints& points, size_t i) {
-  const D d;
-  return {hn::Load(d, points.at[0] + i), hn::Load(d, points.at[1] + i), hn::Load(d, points.at[2] + i)};
+HWY_INLINE Reals3 reals3(const glm::dvec3& v) { return {reals(v.x), reals(v.y), reals(v.z)}; }
+HWY_INLINE Reals3 load3(const EightPoints& points, int at) {
+  return {load(points.at[0] + at), load(points.at[1] + at), load(points.at[2] + at)};
 }
-HWY_INLINE V3 operator-(const V3& a, const V3& b) { return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)}; }
-HWY_INLINE V3 operator+(const V3& a, const V3& b) { return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)}; }
-HWY_INLINE V3 operator*(V s, const V3& a) { return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)}; }
-HWY_INLINE V dot(const V3& a, const V3& b) { return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z)); }
-HWY_INLINE V length(const V3& a) { return hn::Sqrt(dot(a, a)); }
-HWY_INLINE V3 cross(const V3& a, const V3& b) {
-  const auto minor = [](V p, V q, V r, V s) { return hn::Sub(hn::Mul(p, q), hn::Mul(r, s)); };
-  return {minor(a.y, b.z, b.y, a.z), minor(a.z, b.x, b.z, a.x), minor(a.x, b.y, b.x, a.y)};
-}
+HWY_INLINE Reals3 operator-(const Reals3& a, const Reals3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+HWY_INLINE Reals3 operator+(const Reals3& a, const Reals3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+HWY_INLINE Reals3 operator*(Reals s, const Reals3& a) { return {s * a.x, s * a.y, s * a.z}; }
+HWY_INLINE Reals dot(const Reals3& a, const Reals3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+HWY_INLINE Reals length(const Reals3& a) { return norm(a.x, a.y, a.z); }
+HWY_INLINE Reals3 cross(const Reals3& a, const Reals3& b) { return {a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y}; }
 
 /// Biot and Savart's law for straight pieces.
-HWY_INLINE V3 gradient_at(std::span<const Winding::BorderEdge> border, const V3& p) {
-  const V zero = hn::Zero(D());
-  V3 sum{zero, zero, zero};
+HWY_INLINE Reals3 gradient_at(std::span<const Winding::BorderEdge> border, const Reals3& p) {
+  const Reals zero = reals(0.0);
+  Reals3 sum{zero, zero, zero};
   for (const Winding::BorderEdge& edge : border) {
-    const V3 a = set(edge.a) - p, b = set(edge.b) - p;
-    const V la = length(a), lb = length(b), product = hn::Mul(la, lb);
-    const V denominator = hn::Mul(product, hn::Add(product, dot(a, b)));
-    const V weight = hn::Div(hn::Mul(set(static_cast<double>(edge.multiplicity)), hn::Add(la, lb)), denominator);
+    const Reals3 a = reals3(edge.a) - p, b = reals3(edge.b) - p;
+    const Reals la = length(a), lb = length(b), product = la * lb, denominator = product * (product + dot(a, b));
+    const Reals weight = reals(static_cast<double>(edge.multiplicity)) * (la + lb) / denominator;
     // On the piece itself there is none.
-    sum = sum + hn::IfThenElseZero(hn::Gt(denominator, zero), weight) * cross(a, b);
+    sum = sum + select(denominator > zero, weight, zero) * cross(a, b);
   }
-  const V all = set(4.0 * std::numbers::pi);
-  return {hn::Div(sum.x, all), hn::Div(sum.y, all), hn::Div(sum.z, all)};
+  const Reals all = reals(4.0 * std::numbers::pi);
+  return {sum.x / all, sum.y / all, sum.z / all};
 }
 
-void Gradients(std::span<const Winding::BorderEdge> border, const EightPoints& points, EightPoints& gradients) {
-  const D d;
-  for (size_t i = 0; i < 8; i += hn::Lanes(d)) {
-    const V3 gradient = gradient_at(border, load(points, i));
-    hn::Store(gradient.x, d, gradients.at[0] + i);
-    hn::Store(gradient.y, d, gradients.at[1] + i);
-    hn::Store(gradient.z, d, gradients.at[2] + i);
+void gradients_at(std::span<const Winding::BorderEdge> border, const EightPoints& points, EightPoints& gradients) {
+  for (int at = 0; at < 8; at += kWidth) {
+    const Reals3 gradient = gradient_at(border, load3(points, at));
+    store(gradient.x, gradients.at[0] + at);
+    store(gradient.y, gradients.at[1] + at);
+    store(gradient.z, gradients.at[2] + at);
   }
 }
 
-HWY_INLINE V distance_to(const Winding::BorderEdge& edge, const V3& p) {
+HWY_INLINE Reals distance_to(const Winding::BorderEdge& edge, const Reals3& p) {
   const glm::dvec3 along = edge.b - edge.a;
   const double squared = glm::dot(along, along), per = squared > 0.0 ? 1.0 / squared : 0.0;
-  const V share = hn::Min(hn::Max(dot(p - set(edge.a), set(per * along)), hn::Zero(D())), set(1.0));
-  return length(set(edge.a) + share * set(along) - p);
+  const Reals share = minimum(maximum(dot(p - reals3(edge.a), reals3(per * along)), reals(0.0)), reals(1.0));
+  return length(reals3(edge.a) + share * reals3(along) - p);
 }
 
 // Either the border's pieces at their nearest, all pulling one way; or the gradient at the centre and as much as it can change from there,
 // the derivative of r/|r|^3 being no larger than 2/|r|^3: far from a hole its two sides cancel, and only the second bound knows. A piece of
 // length l whose nearest point lies d away pulls by no more than the integral of d / (d^2 + u^2)^(3/2) over its length, which is largest
 // where that point is its middle: l / (d sqrt(d^2 + l^2 / 4)); the integral of 2 / (d^2 + u^2)^(3/2) is 2 / d times as much.
-HWY_INLINE V bound_about(std::span<const Winding::BorderEdge> border, const V3& center, double radius) {
-  const D d;
-  const V zero = hn::Zero(d);
-  V largest = zero, change = zero;
-  auto touched = hn::Lt(zero, zero);
+HWY_INLINE Reals bound_about(std::span<const Winding::BorderEdge> border, const Reals3& center, double radius) {
+  const Reals zero = reals(0.0), infinite = reals(std::numeric_limits<double>::infinity());
+  Reals largest = zero, change = zero;
+  LaneMask touched = zero < zero;
   for (const Winding::BorderEdge& edge : border) {
-    const V distance = hn::Sub(distance_to(edge, center), set(radius));
-    touched = hn::Or(touched, hn::Le(distance, zero));
-    if (hn::AllTrue(d, touched)) break;
+    const Reals distance = distance_to(edge, center) - radius;
+    touched = either(touched, distance <= zero);
+    if (hn::AllTrue(RealTag(), touched)) return infinite;
     const double length_of_edge = glm::distance(edge.a, edge.b),
                  pulls = std::abs(edge.multiplicity) * length_of_edge / (4.0 * std::numbers::pi);
-    const V root = hn::Sqrt(hn::Add(hn::Mul(distance, distance), set(0.25 * length_of_edge * length_of_edge)));
-    const V per = hn::Div(set(1.0), hn::Mul(distance, root)), pull = hn::Mul(set(pulls), per);
-    largest = hn::Add(largest, pull);
-    change = hn::Add(change, hn::Mul(hn::Mul(set(2.0), pull), hn::Mul(root, per)));
+    const Reals root = square_root(square(distance) + 0.25 * length_of_edge * length_of_edge);
+    const Reals per = reals(1.0) / (distance * root), pull = per * pulls;
+    largest = largest + pull;
+    change = change + pull * 2.0 * (root * per);
   }
-  const V infinite = set(std::numeric_limits<double>::infinity());
-  if (hn::AllTrue(d, touched)) return infinite;
-  const V from_center = hn::Add(length(gradient_at(border, center)), hn::Mul(set(radius), change));
-  return hn::IfThenElse(touched, infinite, hn::Min(largest, from_center));
+  const Reals from_center = length(gradient_at(border, center)) + change * radius;
+  return select(touched, infinite, minimum(largest, from_center));
 }
 
-void Bounds(std::span<const Winding::BorderEdge> border, const EightPoints& centers, double radius, double* bounds) {
-  const D d;
-  for (size_t i = 0; i < 8; i += hn::Lanes(d)) hn::Store(bound_about(border, load(centers, i), radius), d, bounds + i);
+void bounds_about(std::span<const Winding::BorderEdge> border, const EightPoints& centers, double radius, double* bounds) {
+  for (int at = 0; at < 8; at += kWidth) store(bound_about(border, load3(centers, at), radius), bounds + at);
 }
 
 }  // namespace
-}  // namespace limn::HWY_NAMESPACE
+}  // namespace HWY_NAMESPACE
+}  // namespace limn
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace limn {
 namespace {
-HWY_EXPORT(Gradients);
-HWY_EXPORT(Bounds);
+HWY_EXPORT(gradients_at);
+HWY_EXPORT(bounds_about);
 
 /// From the first on; lanes beyond repeat the last.
 EightPoints eight_of(std::span<const glm::dvec3> points) {
@@ -127,10 +115,10 @@ EightPoints eight_of(std::span<const glm::dvec3> points) {
 }  // namespace
 
 void border_gradients(std::span<const Winding::BorderEdge> border, const EightPoints& points, EightPoints& gradients) {
-  HWY_DYNAMIC_DISPATCH(Gradients)(border, points, gradients);
+  HWY_DYNAMIC_DISPATCH(gradients_at)(border, points, gradients);
 }
 void border_bounds(std::span<const Winding::BorderEdge> border, const EightPoints& centers, double radius, double* bounds) {
-  HWY_DYNAMIC_DISPATCH(Bounds)(border, centers, radius, bounds);
+  HWY_DYNAMIC_DISPATCH(bounds_about)(border, centers, radius, bounds);
 }
 
 void Winding::gradients(std::span<const glm::dvec3> points, std::span<glm::dvec3> out) const {

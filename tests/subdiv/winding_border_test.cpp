@@ -123,13 +123,13 @@ TEST(WindingBorder, TheTreeIsOffByNoMoreThanSaid) {
     for (int i = 0; i < 100; ++i) {
       const glm::dvec3 p = random.point(2.5);
       const double exact = exact_winding(mesh, p);
-      far = std::max(far, std::abs(winding.number(p, 2.5) - exact));
-      close = std::max(close, std::abs(winding.number(p, 3.5) - exact));
+      far = std::max(far, std::abs(winding.number(p) - exact));
+      close = std::max(close, std::abs(winding.number(p, Winding::kCloseLook) - exact));
     }
   }
   fmt::print("seed {}: off by at most {:.4f}, close by {:.4f}\n", seed, far, close);
-  EXPECT_LT(far, 0.03);
-  EXPECT_LT(close, 0.01);
+  EXPECT_LT(far, Winding::kFarError);
+  EXPECT_LT(close, Winding::kCloseError);
 }
 
 TEST(Winding, IsTheSumOfAllTrianglesAtAnyScale) {

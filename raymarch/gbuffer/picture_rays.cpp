@@ -15,55 +15,79 @@ namespace limn::HWY_NAMESPACE {
 namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// A row of a block is four pixels: as many doubles as AVX2 has. Wider registers gain nothing here.
-using D = hn::CappedTag<double, 4>;
+using D = hn::CappedTag<double, 8>;
 using F = hn::Rebind<float, D>;
+using VD = hn::Vec<D>;
+using VF = hn::Vec<F>;
 
-struct Row {
-  hn::Vec<F> x, y, z;
+// Where the pixels of a block lie in it.
+alignas(64) constexpr double kColumn[16] = {0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3};
+alignas(64) constexpr double kRow[16] = {0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
+
+/// A vector that is linear in pixel coordinates, in registers.
+struct Linear {
+  VD base[3], by_x[3], by_y[3];
+  HWY_INLINE VD at(int axis, VD x, VD y) const { return hn::Add(hn::Add(base[axis], hn::Mul(y, by_y[axis])), hn::Mul(x, by_x[axis])); }
 };
 
-void FillRays(const PictureRays& rays, const PixelTile& tile, const glm::dvec2& sample, RayBatch& batch) {
+HWY_INLINE Linear linear_of(const glm::dvec3& base, const glm::dvec3& by_x, const glm::dvec3& by_y) {
+  const D d;
+  const auto each = [&](const glm::dvec3& v, VD(&to)[3]) {
+    for (int axis = 0; axis < 3; ++axis) to[axis] = hn::Set(d, v[axis]);
+  };
+  Linear linear;
+  each(base, linear.base);
+  each(by_x, linear.by_x);
+  each(by_y, linear.by_y);
+  return linear;
+}
+
+/// How far the rays go: those of lanes outside of the tile nowhere.
+void fill_reach(const PictureRays& rays, const PixelTile& tile, RayBatch& batch) {
+  std::fill_n(batch.t_min, batch.count, rays.t_min);
+  std::fill_n(batch.t_max, batch.count, rays.t_max);
+  if (tile.width % 4 == 0 && tile.height % 4 == 0) return;
+  const int across = (tile.width + 3) >> 2;
+  for (int i = 0; i < batch.count; ++i) {
+    const int x = (i >> 4) % across * 4 + (i & 3), y = (i >> 4) / across * 4 + (i >> 2 & 3);
+    if (x >= tile.width || y >= tile.height) batch.t_max[i] = rays.t_min;
+  }
+}
+
+template <bool kFromOne>
+HWY_INLINE void fill_lines(const PictureRays& rays, const PixelTile& tile, const glm::dvec2& sample, RayBatch& batch) {
   const D d;
   const F f;
-  const int across = (tile.width + 3) >> 2, down = (tile.height + 3) >> 2;
-  batch.count = across * down * 16;
-  const auto linear = [&](const glm::dvec3& base, const glm::dvec3& by_x, const glm::dvec3& by_y, int axis, hn::Vec<D> x, double y) {
-    return hn::Add(hn::Set(d, base[axis] + y * by_y[axis]), hn::Mul(x, hn::Set(d, by_x[axis])));
-  };
-  // All rays of a pinhole start from one place.
-  const bool from_one = rays.start_x == glm::dvec3(0.0) && rays.start_y == glm::dvec3(0.0);
-  for (int block = 0; block < across * down; ++block) {
-    for (int row = 0; row < 4; ++row) {
-      const int first_y = block / across * 4 + row;
-      const double y = tile.y + first_y + sample.y;
-      for (int column = 0; column < 4; column += static_cast<int>(hn::Lanes(d))) {
-        const int first_x = (block % across) * 4 + column;
-        const hn::Vec<D> x = hn::Add(hn::Iota(d, tile.x + first_x), hn::Set(d, sample.x));
-        const auto i = 16 * static_cast<size_t>(block) + 4 * static_cast<size_t>(row) + static_cast<size_t>(column);
-        hn::Vec<F> to[3], length2 = hn::Zero(f);
-        for (int axis = 0; axis < 3; ++axis) {
-          to[axis] = hn::DemoteTo(f, linear(rays.aim, rays.aim_x, rays.aim_y, axis, x, y));
-          length2 = hn::Add(length2, hn::Mul(to[axis], to[axis]));
-        }
-        const hn::Vec<F> per = hn::Div(hn::Set(f, 1.0f), hn::Sqrt(length2));
-        float* const direction[3] = {batch.direction_x, batch.direction_y, batch.direction_z};
-        float* const origin[3] = {batch.origin_x, batch.origin_y, batch.origin_z};
-        for (int axis = 0; axis < 3; ++axis) {
-          const hn::Vec<F> unit = hn::Mul(to[axis], per);
-          hn::StoreU(unit, f, direction[axis] + i);
-          const hn::Vec<D> start = from_one ? hn::Set(d, rays.start[axis]) : linear(rays.start, rays.start_x, rays.start_y, axis, x, y);
-          const hn::Vec<D> from = hn::Add(start, hn::Mul(hn::Set(d, rays.shift), hn::PromoteTo(d, unit)));
-          hn::StoreU(hn::DemoteTo(f, from), f, origin[axis] + i);
-        }
-        hn::StoreU(hn::Set(f, rays.t_min), f, batch.t_min + i);
-        const bool in_row = tile.y + (block / across) * 4 + row < tile.y + tile.height;
-        const hn::Vec<F> last = hn::Set(f, in_row ? static_cast<float>(tile.width) : 0.0f);
-        const auto seen = hn::Lt(hn::Iota(f, static_cast<float>(first_x)), last);
-        hn::StoreU(hn::IfThenElse(seen, hn::Set(f, rays.t_max), hn::Set(f, rays.t_min)), f, batch.t_max + i);
-      }
+  const Linear aim = linear_of(rays.aim, rays.aim_x, rays.aim_y), start = linear_of(rays.start, rays.start_x, rays.start_y);
+  const VD shift = hn::Set(d, rays.shift), sample_x = hn::Set(d, sample.x), sample_y = hn::Set(d, sample.y);
+  const int across = (tile.width + 3) >> 2;
+  float* const direction[3] = {batch.direction_x, batch.direction_y, batch.direction_z};
+  float* const origin[3] = {batch.origin_x, batch.origin_y, batch.origin_z};
+  for (int i = 0; i < batch.count; i += static_cast<int>(hn::Lanes(d))) {
+    const int block = i >> 4, within = i & 15;
+    const VD x = hn::Add(hn::Add(hn::Load(d, kColumn + within), hn::Set(d, tile.x + block % across * 4)), sample_x);
+    const VD y = hn::Add(hn::Add(hn::Load(d, kRow + within), hn::Set(d, tile.y + block / across * 4)), sample_y);
+    VF to[3], length2 = hn::Zero(f);
+    for (int axis = 0; axis < 3; ++axis) {
+      to[axis] = hn::DemoteTo(f, aim.at(axis, x, y));
+      length2 = hn::Add(length2, hn::Mul(to[axis], to[axis]));
+    }
+    const VF per = hn::Div(hn::Set(f, 1.0f), hn::Sqrt(length2));
+    for (int axis = 0; axis < 3; ++axis) {
+      const VF unit = hn::Mul(to[axis], per);
+      hn::Store(unit, f, direction[axis] + i);
+      const VD from = hn::Add(kFromOne ? start.base[axis] : start.at(axis, x, y), hn::Mul(shift, hn::PromoteTo(d, unit)));
+      hn::Store(hn::DemoteTo(f, from), f, origin[axis] + i);
     }
   }
+}
+
+void FillRays(const PictureRays& rays, const PixelTile& tile, const glm::dvec2& sample, RayBatch& batch) {
+  batch.count = ((tile.width + 3) >> 2) * ((tile.height + 3) >> 2) * 16;
+  fill_reach(rays, tile, batch);
+  // All rays of a pinhole start from one place.
+  const bool from_one = rays.start_x == glm::dvec3(0.0) && rays.start_y == glm::dvec3(0.0);
+  from_one ? fill_lines<true>(rays, tile, sample, batch) : fill_lines<false>(rays, tile, sample, batch);
 }
 
 }  // namespace

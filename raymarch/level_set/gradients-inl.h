@@ -77,11 +77,38 @@ struct CentralStencil {
   FourPairs below, above;        ///< Columns x 2 + y: nodes -1 and 0, 1 and 2.
 };
 
-HWY_INLINE CentralStencil gather_central(const std::int16_t* values, const Cells& cells) {
+/// Of the lanes `hit`, at least one, each distinct cell is loaded once. A packet covers few cells where voxels are larger than pixels;
+/// where they are smaller this takes no longer than a load for each lane and turning the lanes' words round in registers.
+HWY_INLINE CentralStencil load_central(const std::int16_t* values, const Cells& cells, VI number, MF hit) {
   const I di;
-  const VI x = hn::Set(di, kStepX), below = cells.minus[2], above = hn::Sub(cells.plus[2], hn::Set(di, 2));
-  return {pairs_along_y(values, cells.minus[0], cells.plus[0]), pairs_along_x(values, cells.minus[1], cells.plus[1]),
-          pairs_along_y(values, below, hn::Add(below, x)), pairs_along_y(values, above, hn::Add(above, x))};
+  alignas(64) std::int32_t at[6][hn::MaxLanes(di)], numbers[hn::MaxLanes(di)];
+  hn::Store(number, di, numbers);
+  for (int axis = 0; axis < 3; ++axis) {
+    hn::Store(cells.minus[axis], di, at[axis]);
+    hn::Store(cells.plus[axis], di, at[3 + axis]);
+  }
+  VI words[16];
+  for (VI& word : words) word = hn::Zero(di);
+  for (auto rest = hn::RebindMask(di, hit); !hn::AllFalse(di, rest);) {
+    const auto lane = static_cast<size_t>(hn::FindKnownFirstTrue(di, rest));
+    const auto same = hn::And(rest, hn::Eq(number, hn::Set(di, numbers[lane])));
+    rest = hn::AndNot(same, rest);
+    const auto four = [&](size_t word, std::int32_t a, std::int32_t b, std::int32_t step) {
+      words[word] = hn::IfThenElse(same, word_at(values, a), words[word]);
+      words[word + 1] = hn::IfThenElse(same, word_at(values, a + step), words[word + 1]);
+      words[word + 2] = hn::IfThenElse(same, word_at(values, b), words[word + 2]);
+      words[word + 3] = hn::IfThenElse(same, word_at(values, b + step), words[word + 3]);
+    };
+    const std::int32_t below = at[2][lane], above = at[5][lane] - 2;
+    four(0, at[0][lane], at[3][lane], kStepY);
+    four(4, at[1][lane], at[4][lane], kStepX);
+    four(8, below, below + kStepX, kStepY);
+    four(12, above, above + kStepX, kStepY);
+  }
+  const auto four = [&](size_t word) {
+    return FourPairs{{pair_of(words[word]), pair_of(words[word + 1]), pair_of(words[word + 2]), pair_of(words[word + 3])}};
+  };
+  return {four(0), four(4), four(8), four(12)};
 }
 
 /// The interpolant on the line through a place along one axis, where it meets the faces of the cell and of those beside it: at -1, 0, 1, 2.
@@ -147,8 +174,8 @@ struct Settled {
 
 /// Central differences at the cell's nodes, interpolated: the same as differences of the interpolant itself, taken one voxel to either
 /// side at the same place in the cells there. The hit goes to where the interpolant, less its chords' sag, has its root.
-HWY_INLINE Settled central_gradient(const std::int16_t* values, const Cells& cells, const V3& direction, VF side) {
-  const CentralStencil stencil = gather_central(values, cells);
+HWY_INLINE Settled central_gradient(const std::int16_t* values, const Cells& cells, VI number, MF hit, const V3& direction, VF side) {
+  const CentralStencil stencil = load_central(values, cells, number, hit);
   const auto gradient = [](const Sections& s, const V3& at) { return V3{s.x.slope(at.x), s.y.slope(at.y), s.z.slope(at.z)}; };
   const Sections first = sections(stencil, cells.local);
   const V3& at = cells.local;

@@ -9,6 +9,8 @@
 
 #include <hwy/highway.h>
 
+#include <cstring>
+
 #include "raymarch/level_set/bricks.h"
 #include "raymarch/surface.h"
 
@@ -50,6 +52,12 @@ struct Pair {
 };
 HWY_INLINE Pair pair_of(VI both) {
   return {hn::ConvertTo(F(), hn::ShiftRight<16>(hn::ShiftLeft<16>(both))), hn::ConvertTo(F(), hn::ShiftRight<16>(both))};
+}
+/// The word at `offset` (bytes), in every lane.
+HWY_INLINE VI word_at(const std::int16_t* base, std::int32_t offset) {
+  std::int32_t both;
+  std::memcpy(&both, reinterpret_cast<const char*>(base) + offset, sizeof both);
+  return hn::Set(I(), both);
 }
 HWY_INLINE Pair gather_pair(const std::int16_t* base, VI offset) {
   return pair_of(hn::GatherOffset(I(), reinterpret_cast<const std::int32_t*>(base), offset));

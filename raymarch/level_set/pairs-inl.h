@@ -80,24 +80,6 @@ HWY_INLINE FourPairs pairs_along_y(const std::int16_t* base, VI a, VI b) {
   }));
 }
 
-/// The same with the nodes behind along x.
-HWY_INLINE FourPairs pairs_along_x(const std::int16_t* base, VI a, VI b) {
-  const I i;
-  alignas(64) std::int32_t at_a[16], at_b[16];
-  hn::Store(a, i, at_a);
-  hn::Store(b, i, at_b);
-  const char* const bytes = reinterpret_cast<const char*>(base);
-  return pairs_of(turned_round([&](int k) {
-    const auto pair = [&](std::int32_t offset) {
-      std::int32_t both;
-      std::memcpy(&both, bytes + offset, sizeof both);
-      return _mm_cvtsi32_si128(both);
-    };
-    return _mm_unpacklo_epi64(_mm_unpacklo_epi32(pair(at_a[k]), pair(at_a[k] + kStepX)),
-                              _mm_unpacklo_epi32(pair(at_b[k]), pair(at_b[k] + kStepX)));
-  }));
-}
-
 /// Four values along z of a spline's brick from `at` (bytes) on, and four of the next row along y: as two pairs each.
 HWY_INLINE FourPairs spline_rows(const std::int16_t* base, VI at) {
   alignas(64) std::int32_t offsets[16];
@@ -121,12 +103,10 @@ HWY_INLINE FourValues four_values(const float* base, VI at) {
   return {{hn::BitCast(d, words.w[0]), hn::BitCast(d, words.w[1]), hn::BitCast(d, words.w[2]), hn::BitCast(d, words.w[3])}};
 }
 #else
-HWY_INLINE FourPairs pairs_along(const std::int16_t* base, VI a, VI b, std::int32_t step) {
-  const VI behind = hn::Set(I(), step);
+HWY_INLINE FourPairs pairs_along_y(const std::int16_t* base, VI a, VI b) {
+  const VI behind = hn::Set(I(), kStepY);
   return {{gather_pair(base, a), gather_pair(base, hn::Add(a, behind)), gather_pair(base, b), gather_pair(base, hn::Add(b, behind))}};
 }
-HWY_INLINE FourPairs pairs_along_y(const std::int16_t* base, VI a, VI b) { return pairs_along(base, a, b, kStepY); }
-HWY_INLINE FourPairs pairs_along_x(const std::int16_t* base, VI a, VI b) { return pairs_along(base, a, b, kStepX); }
 HWY_INLINE FourPairs spline_rows(const std::int16_t* base, VI at) {
   const VI next = hn::Add(at, hn::Set(I(), kSplineStepY)), four = hn::Set(I(), 4);
   return {{gather_pair(base, at), gather_pair(base, hn::Add(at, four)), gather_pair(base, next), gather_pair(base, hn::Add(next, four))}};

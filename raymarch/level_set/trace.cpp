@@ -43,11 +43,11 @@ HWY_NOINLINE void to_index_space(const Affine& index_from_render, const RayBatch
   }
 }
 
-HWY_INLINE Settled settle(BrickGradient gradient, const RayBricks& bricks, const Cells& cells, VI number, const IndexRays& rays, size_t i,
-                          VF side) {
+HWY_INLINE Settled settle(BrickGradient gradient, const RayBricks& bricks, const Cells& cells, VI number, MF hit, const IndexRays& rays,
+                          size_t i, VF side) {
   if (gradient == BrickGradient::cell) return {cell_gradient(bricks.values.data(), cells), hn::Zero(F())};
   const V3 direction = load3(rays.direction, i);
-  return gradient == BrickGradient::central ? central_gradient(bricks.values.data(), cells, direction, side)
+  return gradient == BrickGradient::central ? central_gradient(bricks.values.data(), cells, number, hit, direction, side)
                                             : cubic_gradient(bricks.spline, cells, number, direction, side);
 }
 
@@ -64,7 +64,7 @@ HWY_NOINLINE void settle_lowered(const BrickTrace& what, const IndexRays& rays, 
     const auto taken = hn::Eq(kind, hn::Set(di, 1 + static_cast<std::int32_t>(gradient)));
     if (hn::AllFalse(di, taken)) continue;
     const Cells at = cells_of(bricks, rays, i, root, number, gradient == BrickGradient::central);
-    const Settled other = settle(gradient, bricks, at, number, rays, i, set(what.view->side));
+    const Settled other = settle(gradient, bricks, at, number, hn::RebindMask(d, taken), rays, i, set(what.view->side));
     const MF mask = hn::RebindMask(d, taken);
     settled.gradient = {hn::IfThenElse(mask, other.gradient.x, settled.gradient.x),
                         hn::IfThenElse(mask, other.gradient.y, settled.gradient.y),
@@ -84,7 +84,8 @@ HWY_NOINLINE void write_packet(const BrickTrace& what, const IndexRays& rays, co
   const RayBricks& bricks = *what.view->bricks;
   const Cells cells = cells_of(bricks, rays, i, hn::IfThenElseZero(hn::RebindMask(d, hit), root), hn::Max(cell, hn::Zero(di)),
                                what.gradient == BrickGradient::central);
-  Settled settled = settle(what.gradient, bricks, cells, hn::Max(cell, hn::Zero(di)), rays, i, set(what.view->side));
+  Settled settled =
+      settle(what.gradient, bricks, cells, hn::Max(cell, hn::Zero(di)), hn::RebindMask(d, hit), rays, i, set(what.view->side));
   if (what.lowered != nullptr)
     settle_lowered(what, rays, i, hn::IfThenElseZero(hn::RebindMask(d, hit), root), hn::Max(cell, hn::Zero(di)), settled);
   const V3& g = settled.gradient;
@@ -269,18 +270,25 @@ void take(size_t size, size_t count, Search& search) {
   }
 }
 
+/// The cells of one size; false where there are none.
+bool select(size_t size, size_t count, Search& search) {
+  bool any = false;
+  for (size_t i = 0; i < count; ++i) {
+    const bool here = search.cell[i] >= 0 && search.size[i] == size;
+    search.found.cell[i] = here ? search.cell[i] : -1;
+    any = any || here;
+  }
+  return any;
+}
+
 void write(const BrickTrace* sizes, size_t number, const RayBatch& rays, Search& search, HitBatch& hits) {
   const size_t count = static_cast<size_t>(rays.count), lanes = hn::Lanes(F());
   for (size_t k = 0; k < number; ++k) {
     if (!sizes[k].view->groups) continue;
-    bool any = false;
-    for (size_t i = 0; i < count; ++i) {
-      const bool here = search.cell[i] >= 0 && search.size[i] == k;
-      search.found.cell[i] = here ? search.cell[i] : -1;
-      any = any || here;
+    if (number > 1) {
+      if (!select(k, count, search)) continue;
+      to_index_space(sizes[k].view->index_from_render, rays, count, search.rays);
     }
-    if (!any) continue;
-    if (number > 1) to_index_space(sizes[k].view->index_from_render, rays, count, search.rays);
     for (size_t i = 0; i < count; i += lanes) write_packet(sizes[k], search.rays, rays, i, search.found, hits);
   }
 }
@@ -298,7 +306,7 @@ void TraceBricks(const BrickTrace* sizes, size_t number, const BrickTree* const*
       search_tree(sizes[k], *trees[k], rays, search);
     else
       search_tile(sizes[k], tile, rays, search);
-    take(k, count, search);
+    if (number > 1) take(k, count, search);
   }
   write(sizes, number, rays, search, hits);
 }

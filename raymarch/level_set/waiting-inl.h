@@ -12,6 +12,7 @@
 #include <cstring>
 
 #include "raymarch/level_set/roots-inl.h"
+#include "sdf/packing-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace limn::HWY_NAMESPACE {
@@ -42,13 +43,14 @@ HWY_INLINE void push(const Candidates& c, MF which, Waiting& waiting) {
   const F d;
   const I di;
   const size_t at = waiting.count;
-  const auto put = [&](VF v, float* to) { hn::StoreU(hn::Compress(v, which), d, to + at); };
+  const auto packing = packing_of(d, which);
+  const auto put = [&](VF v, float* to) { hn::StoreU(packed(v, packing), d, to + at); };
   const auto put3 = [&](const V3& v, float(*to)[Waiting::kCapacity]) {
     put(v.x, to[0]);
     put(v.y, to[1]);
     put(v.z, to[2]);
   };
-  const auto puti = [&](VI v, std::int32_t* to) { hn::StoreU(hn::Compress(v, hn::RebindMask(di, which)), di, to + at); };
+  const auto puti = [&](VI v, std::int32_t* to) { hn::StoreU(packed(v, packing), di, to + at); };
   put3(c.origin, waiting.origin);
   put3(c.direction, waiting.direction);
   put3(c.inverse, waiting.inverse);
@@ -155,9 +157,10 @@ HWY_INLINE void note(VF t, VI lane, VI cell, MF found, BrickHits& hits) {
   const I di;
   HWY_ALIGN float ts[16];
   HWY_ALIGN std::int32_t lanes[16], cells[16];
-  hn::Store(hn::Compress(t, found), d, ts);
-  hn::Store(hn::Compress(lane, hn::RebindMask(di, found)), di, lanes);
-  hn::Store(hn::Compress(cell, hn::RebindMask(di, found)), di, cells);
+  const auto packing = packing_of(d, found);
+  hn::Store(packed(t, packing), d, ts);
+  hn::Store(packed(lane, packing), di, lanes);
+  hn::Store(packed(cell, packing), di, cells);
   const size_t count = hn::CountTrue(d, found);
   for (size_t k = 0; k < count; ++k) {
     const std::int32_t to = lanes[k];

@@ -9,6 +9,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "sdf/packing-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace limn::HWY_NAMESPACE {
 namespace {
@@ -55,7 +57,7 @@ size_t FindInReach(const FoldLanes& folds, const FoldSearch& search, std::uint32
   for (std::uint32_t at = begin; at < end; at += static_cast<std::uint32_t>(hn::Lanes(d))) {
     const auto reach = hn::AndNot(out_of_reach(folds, asked, at), hn::FirstN(d, end - at));
     // A store that compresses on its way takes many times as long on some processors.
-    hn::StoreU(hn::Compress(hn::Add(lanes, hn::Set(u, at)), hn::RebindMask(u, reach)), u, found + count);
+    hn::StoreU(packed(hn::Add(lanes, hn::Set(u, at)), packing_of(d, reach)), u, found + count);
     count += hn::CountTrue(d, reach);
   }
   return count;

@@ -6,7 +6,7 @@
 
 #include "sdf/error.h"
 #include "sdf/level_set_lanes.h"
-#include "sdf/shape.h"
+#include "sdf/project_to_surface.h"
 #include "sdf/tape_jets.h"
 
 namespace limn {
@@ -52,11 +52,21 @@ void field_values(DistanceEvaluator& distance, const LanePoints& points, LaneNum
 
 namespace {
 
-/// Where the jet tells nothing: as far as Newton's method has to go. Never below the true distance, as it ends on the surface.
-double projected_distance(FieldEvaluator& evaluator, const glm::dvec3& point, double at_least, double otherwise) {
-  glm::dvec3 foot = point;
-  if (!project_to_surface(evaluator, foot, 1e-9)) return std::max(at_least, otherwise);
-  return std::max(at_least, glm::distance(foot, point));
+/// Where the jet tells nothing, at the points `which`: as far as Newton's method has to go. Never below the true distance, as it ends on
+/// the surface.
+void project_points(FieldEvaluator& evaluator, const NearPoints& near, std::span<const std::uint16_t> which, LaneNumbers& estimates) {
+  std::vector<glm::dvec3> points;
+  points.reserve(which.size());
+  for (const std::uint16_t k : which) points.push_back(near.points.point(k));
+  const std::vector<SurfaceProjection> feet =
+      project_together([&](std::span<const glm::dvec3> asked, std::span<double> values,
+                           std::span<glm::dvec3> gradients) { evaluator.gradients(asked, values, gradients); },
+                       points, extent_of(evaluator.field().traits().bounds), 1e-9);
+  for (size_t i = 0; i < which.size(); ++i) {
+    const size_t k = which[i];
+    const double found = feet[i].reached() ? glm::distance(feet[i].position(), points[i]) : std::abs(estimates[k]);
+    estimates[k] = std::copysign(std::max(near.no_less[k], found), near.value[k]);
+  }
 }
 
 }  // namespace
@@ -73,17 +83,16 @@ void signed_distances(DistanceEvaluator& distance, const LanePoints& points, dou
   LaneFlags reasonable;
   tape_distances(*distance.tape, near.points, distance.scratch, estimates, reasonable);
   sign_sizes(near, estimates);
+  std::array<std::uint16_t, kMostLanePoints> unclear;
+  size_t count = 0;
   for (size_t first = 0; first < near.points.count; first += 16) {
-    const size_t end = std::min(first + 16, near.points.count);
-    for (size_t k = first; reasonable[first / 16] != 0xffffu && k < end; ++k) {
-      // Far out by its first-order estimate as well, it is not worth the iteration.
-      if (flag_of(reasonable, k) || near.no_less[k] >= half_width) continue;
-      const double size = projected_distance(distance.projects ? *distance.projects : evaluator, near.points.point(k), near.no_less[k],
-                                             std::abs(estimates[k]));
-      estimates[k] = std::copysign(size, near.value[k]);
-    }
-    for (size_t k = first; k < end; ++k) distances[near.index[k]] = estimates[k];
+    if (reasonable[first / 16] == 0xffffu) continue;
+    // Far out by its first-order estimate as well, a point is not worth the iteration.
+    for (size_t k = first; k < std::min(first + 16, near.points.count); ++k)
+      if (!flag_of(reasonable, k) && near.no_less[k] < half_width) unclear[count++] = static_cast<std::uint16_t>(k);
   }
+  if (count > 0) project_points(distance.projects ? *distance.projects : evaluator, near, std::span(unclear).first(count), estimates);
+  for (size_t k = 0; k < near.points.count; ++k) distances[near.index[k]] = estimates[k];
 }
 
 void signed_distances(DistanceEvaluator& distance, std::span<const glm::dvec3> points, double half_width, std::span<double> distances) {

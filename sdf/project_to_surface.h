@@ -5,6 +5,9 @@
 #include <cmath>
 #include <glm/glm.hpp>
 #include <limits>
+#include <numeric>
+#include <span>
+#include <vector>
 
 #include "sdf/geometry.h"
 
@@ -68,6 +71,29 @@ class SurfaceProjection {
 
 /// For SurfaceProjection.
 inline double extent_of(const Box& bounds) { return bounds.finite() ? bounds.radius() : 0.0; }
+
+/// Points on their way together, each as it goes by itself: `gradients_at(points, values, gradients)` evaluates the field at all places
+/// that are asked next.
+template <class GradientsAt>
+std::vector<SurfaceProjection> project_together(const GradientsAt& gradients_at, std::span<const glm::dvec3> points, double extent,
+                                                double tolerance) {
+  std::vector<SurfaceProjection> projections;
+  projections.reserve(points.size());
+  for (const glm::dvec3& point : points) projections.emplace_back(point, extent, tolerance);
+  std::vector<size_t> open(points.size());
+  std::iota(open.begin(), open.end(), size_t{0});
+  std::vector<glm::dvec3> asked, gradients;
+  std::vector<double> values;
+  while (!open.empty()) {
+    asked.clear();
+    for (const size_t i : open) asked.push_back(projections[i].asks());
+    values.resize(open.size()), gradients.resize(open.size());
+    gradients_at(std::span<const glm::dvec3>(asked), std::span(values), std::span(gradients));
+    for (size_t k = 0; k < open.size(); ++k) projections[open[k]].answer(values[k], gradients[k]);
+    std::erase_if(open, [&](size_t i) { return projections[i].done(); });
+  }
+  return projections;
+}
 
 /// `bounds` are the field's, `gradient_at(point, value, gradient)` evaluates it.
 template <class GradientAt>

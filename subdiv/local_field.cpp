@@ -87,21 +87,10 @@ Landing LocalField::project(const glm::dvec3& point) { return project(std::span(
 
 std::vector<Landing> LocalField::project(std::span<const glm::dvec3> points) {
   constexpr double kTolerance = 1e-12;
-  std::vector<SurfaceProjection> projections;
-  projections.reserve(points.size());
-  for (const glm::dvec3& point : points) projections.emplace_back(point, extent_, kTolerance);
-  std::vector<size_t> open(points.size());
-  std::iota(open.begin(), open.end(), size_t{0});
-  std::vector<glm::dvec3> asked, slopes;
-  std::vector<double> values;
-  while (!open.empty()) {
-    asked.clear();
-    for (const size_t i : open) asked.push_back(projections[i].asks());
-    values.resize(open.size()), slopes.resize(open.size());
-    gradients(asked, values, slopes);
-    for (size_t k = 0; k < open.size(); ++k) projections[open[k]].answer(values[k], slopes[k]);
-    std::erase_if(open, [&](size_t i) { return projections[i].done(); });
-  }
+  const std::vector<SurfaceProjection> projections =
+      project_together([this](std::span<const glm::dvec3> asked, std::span<double> values,
+                              std::span<glm::dvec3> slopes) { gradients(asked, values, slopes); },
+                       points, extent_, kTolerance);
   std::vector<Landing> landings;
   landings.reserve(points.size());
   for (const SurfaceProjection& one : projections) landings.push_back({one.position(), one.reached(), one.value(), one.gradient()});

@@ -78,7 +78,7 @@ void signed_distances(DistanceEvaluator& distance, const LanePoints& points, dou
   if (traits.exact_distance) return;
 
   NearPoints near;
-  select_near(points, traits.lipschitz, half_width, distances, near);
+  select_near(points, distance.lipschitz, half_width, distances, near);
   LaneNumbers estimates;
   LaneFlags reasonable;
   tape_distances(*distance.tape, near.points, distance.scratch, estimates, reasonable);

@@ -23,11 +23,13 @@ JetDistance distance_from_jet(const FieldJet& jet);
 /// Evaluates distances to one field; owns its scratch memory, so keep one for each thread.
 struct DistanceEvaluator {
   /// `memory`: of an evaluator that is no longer needed.
-  explicit DistanceEvaluator(const Field& field, TapeScratch memory = {}) : evaluator(field), scratch(std::move(memory)) {}
+  explicit DistanceEvaluator(const Field& field, TapeScratch memory = {})
+      : evaluator(field), scratch(std::move(memory)), lipschitz(field.traits().lipschitz) {}
   FieldEvaluator evaluator;
   std::optional<FieldTape> tape{};  ///< Made where it is needed first.
   bool has_bits_of_field = false;   ///< Of the tape, where there is one.
   TapeScratch scratch{};
+  double lipschitz;  ///< Of the field within the half width of the points that are asked for, no more than its traits'.
   /// Of a field that `evaluator`'s is a part of, for places outside that part; null: there are none.
   FieldEvaluator* projects = nullptr;
 };

@@ -65,7 +65,11 @@ Lattice lattice_for(const Box& bounds, const LevelSetSettings& settings) {
 struct Cube {
   glm::ivec3 origin;
   int size;
-  Field field;  ///< The whole one near the surface in reach of the cube's nodes, shorter where some of its parts are of no influence.
+  Field field;       ///< The whole one near the surface in reach of the cube's nodes, shorter where some of its parts are of no influence.
+  double lipschitz;  ///< Of the field within the half width of the nodes, no more than its traits'.
+  int tries = kNarrowed;  ///< So many more halvings are tried whether it can be narrowed.
+
+  static constexpr int kNarrowed = 3;
 };
 
 Box nodes_of(const Cube& cube, const Lattice& lattice) { return {lattice.node(cube.origin), lattice.node(cube.origin + (cube.size - 1))}; }
@@ -79,16 +83,31 @@ double exact_within(const Field& field, const Lattice& lattice) {
   return std::max(field.traits().lipschitz, 1.0) * (lattice.half_width + 3.0 * lattice.h);
 }
 
+/// How steep a formula is at most says little of places where it is less so: by bounds of its gradient in reach of the cube. Where these
+/// have told nothing new for some halvings, as of distances, they are not asked for any more.
+void narrow_slope(FieldEvaluator& evaluator, const Box& reach, Cube& cube) {
+  constexpr double kWorthIt = 0.8;
+  const auto [x, y, z] = evaluator.gradient_bounds(reach).gradient;
+  const double steepest = norm(x, y, z).upper;
+  cube.tries = steepest < kWorthIt * cube.lipschitz ? Cube::kNarrowed : cube.tries - 1;
+  if (steepest > 0.0 && steepest < cube.lipschitz) cube.lipschitz = steepest;
+}
+
 /// False only where no node of the cube lies within the half width of the surface.
-bool may_hold_band(FieldEvaluator& evaluator, const Lattice& lattice, const Cube& cube) {
+bool may_hold_band(FieldEvaluator& evaluator, const Lattice& lattice, Cube& cube) {
   const FieldTraits& traits = evaluator.field().traits();
   const Box nodes = nodes_of(cube, lattice);
   const Box reach = dilate(nodes, lattice.half_width);
   if (intersect(reach, traits.bounds).empty()) return false;
   const Interval here = evaluator.bounds(nodes);
-  const double limit = traits.lipschitz * lattice.half_width;
-  if (here.lower > limit || here.upper < -limit) return false;
-  return evaluator.bounds(reach).contains(0.0);
+  const auto is_far = [&] {
+    const double limit = cube.lipschitz * lattice.half_width;
+    return here.lower > limit || here.upper < -limit;
+  };
+  if (is_far() || !evaluator.bounds(reach).contains(0.0)) return false;
+  if (cube.tries == 0) return true;
+  narrow_slope(evaluator, reach, cube);
+  return !is_far();
 }
 
 /// Refused before the memory is taken. Halving the cubes multiplies those on a surface by four.
@@ -113,7 +132,9 @@ std::vector<Cube> split(const std::vector<Cube>& cubes, const Lattice& lattice) 
     FieldEvaluator evaluator(cubes[i].field);
     const int half = cubes[i].size / 2;
     for (int octant = 0; octant < 8; ++octant) {
-      Cube child{cubes[i].origin + half * glm::ivec3(octant & 1, (octant >> 1) & 1, octant >> 2), half, cubes[i].field};
+      Cube child = cubes[i];
+      child.origin += half * glm::ivec3(octant & 1, (octant >> 1) & 1, octant >> 2);
+      child.size = half;
       if (!may_hold_band(evaluator, lattice, child)) continue;
       child.field = restricted_near_surface(cubes[i].field, reach_of(child, lattice), exact_within(cubes[i].field, lattice));
       kept[i].push_back(std::move(child));
@@ -137,7 +158,7 @@ std::vector<Cube> band_blocks(const Field& field, const Lattice& lattice, const 
            fmt::format("above {:.2g}", bounds.longest_side() * 1e-8));
   int size = kBlock;
   while (size < longest * kBlock) size *= 2;
-  std::vector<Cube> cubes{{kBlock * glm::ivec3(lower), size, field}};
+  std::vector<Cube> cubes{{kBlock * glm::ivec3(lower), size, field, field.traits().lipschitz}};
   while (!cubes.empty() && cubes.front().size > kBlock) {
     cubes = split(cubes, lattice);
     check_size(cubes.size(), cubes.empty() ? kBlock : cubes.front().size, settings);
@@ -198,7 +219,7 @@ void find_band_nodes(const Cube& cube, const Lattice& lattice, DistanceEvaluator
   field_values(distance, middles, values);
 
   const Field& field = distance.evaluator.field();
-  const double lipschitz = field.traits().lipschitz;
+  const double lipschitz = cube.lipschitz;
   const double to_corner = 0.5 * std::sqrt(1.0 + 9.0 + 9.0) * lattice.h;
   const double limit = std::max(lipschitz, 1.0) * lattice.half_width + lipschitz * to_corner;
   const double slack = 1e-6 * limit + 1e-13 * extent_at(field, middles.point(0));
@@ -220,6 +241,7 @@ void find_band_nodes(const Cube& cube, const Lattice& lattice, DistanceEvaluator
 ThinPlaces fill(LevelSetBlock& block, const Cube& cube, const Lattice& lattice, DistanceEvaluator& distance) {
   BandNodes nodes;
   find_band_nodes(cube, lattice, distance, block, nodes);
+  distance.lipschitz = cube.lipschitz;
   signed_distances(distance, nodes.points, lattice.half_width, nodes.distances);
   block.origin = cube.origin;
   std::memset(block.active, 0, sizeof block.active);
@@ -255,6 +277,8 @@ void tell_band(std::span<const Cube> cubes, const Lattice& lattice, DistanceEval
     const double* const from = nodes.distances.at + first;
     return std::any_of(from, from + count, [&](double d) { return std::abs(d) <= lattice.half_width; });
   };
+  distance.lipschitz = 0.0;
+  for (size_t k = 0; k < asked.count; ++k) distance.lipschitz = std::max(distance.lipschitz, cubes[asked.cubes[k]].lipschitz);
   signed_distances(distance, nodes.points, lattice.half_width, nodes.distances);
   for (size_t k = 0; k < asked.count; ++k) holds[asked.cubes[k]] = any_in_band(kFirstAsked * k, kFirstAsked) ? 1 : 0;
   for (size_t k = 0; k < asked.count; ++k) {
@@ -262,6 +286,7 @@ void tell_band(std::span<const Cube> cubes, const Lattice& lattice, DistanceEval
     if (holds[i] != 0) continue;
     LevelSetBlock block;
     find_band_nodes(cubes[i], lattice, distance, block, nodes);
+    distance.lipschitz = cubes[i].lipschitz;
     signed_distances(distance, nodes.points, lattice.half_width, nodes.distances);
     holds[i] = any_in_band(0, nodes.count()) ? 1 : 0;
   }

@@ -1,11 +1,14 @@
 #include "sdf/level_set.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "sdf/error.h"
 #include "sdf/level_set_crossings.h"
 #include "sdf/level_set_data.h"
 #include "sdf/level_set_distance.h"
+#include "sdf/vm_field.h"
+#include "tests/random_seed.h"
 #include "tests/sdf/level_set_maker.h"
 
 namespace limn {
@@ -156,6 +159,52 @@ TEST(LevelSetFromField, CreasesAndBlendsKeepTheirSignAndTheirSurfaceCells) {
   }
 }
 
+/// A level set beside the distances of the whole field at every node of its bounds.
+struct BesideDistances {
+  std::int64_t active = 0, wrongly = 0;  ///< Nodes; of these and the others those that should be otherwise.
+  double worst_voxels = 0.0;             ///< At active nodes.
+};
+BesideDistances beside_distances(const Field& field, const LevelSetSettings& settings) {
+  const LevelSet level_set = level_set_from_field(field, settings);
+  const LevelSetInfo& info = level_set.info();
+  const Box reach = dilate(info.bounds, 5.0 * settings.voxel_size);
+  const glm::ivec3 lower(glm::floor(level_set.data().index_from_world.point(reach.lower)));
+  const glm::ivec3 upper(glm::ceil(level_set.data().index_from_world.point(reach.upper)));
+  const double half_width = settings.half_width_voxels * settings.voxel_size;
+  DistanceEvaluator whole(field);
+  const auto accessor = level_set.data().accessor();
+  BesideDistances found;
+  for (int x = lower.x; x <= upper.x; ++x)
+    for (int y = lower.y; y <= upper.y; ++y) {
+      std::vector<glm::dvec3> points;
+      for (int z = lower.z; z <= upper.z; ++z) points.push_back(info.world_from_index.point({x, y, z}));
+      std::vector<double> distances(points.size());
+      signed_distances(whole, points, half_width, distances);
+      for (size_t k = 0; k < points.size(); ++k) {
+        const nanovdb::Coord at(x, y, lower.z + static_cast<int>(k));
+        const double value = static_cast<double>(accessor.getValue(at));
+        // At the band's end the lattice's own coordinates round differently.
+        if (std::abs(std::abs(distances[k]) - half_width) > 1e-9)
+          found.wrongly += accessor.isActive(at) != (std::abs(distances[k]) < half_width);
+        if (!accessor.isActive(at)) continue;
+        ++found.active;
+        found.worst_voxels = std::max(found.worst_voxels, std::abs(value - distances[k]) / settings.voxel_size);
+      }
+    }
+  return found;
+}
+
+/// x^4 - a x^2 + y^4 - b y^2 + z^4 - c z^2 + d: at the corners of its bounds several times as steep as on the surface.
+Field quartic(double a, double b, double c, double d) {
+  const std::string text = fmt::format(
+      "x var-x\ny var-y\nz var-z\na const {}\nb const {}\nc const {}\nd const {}\n"
+      "x2 square x\ny2 square y\nz2 square z\nx4 square x2\ny4 square y2\nz4 square z2\n"
+      "ax mul a x2\nby mul b y2\ncz mul c z2\npx sub x4 ax\npy sub y4 by\npz sub z4 cz\n"
+      "xy add px py\nxyz add xy pz\nout add xyz d\n",
+      a, b, c, d);
+  return vm_field(text, "quartic.vm").field;
+}
+
 TEST(LevelSetFromField, PartsWithoutInfluenceAreLeftOutWithoutATrace) {
   // A plate with many holes, blended ribs and a shell: most parts are far from most blocks.
   Field part = make_shape("rounded_box", {{"half", {1.0, 0.15, 1.0}}, {"rounding", {0.04}}});
@@ -169,36 +218,23 @@ TEST(LevelSetFromField, PartsWithoutInfluenceAreLeftOutWithoutATrace) {
   }
   const Field field = combine(Csg::difference, cut);
   const LevelSetSettings settings{.voxel_size = 0.02, .half_width_voxels = 4.1232};
-  const LevelSet level_set = level_set_from_field(field, settings);
-  const LevelSetInfo& info = level_set.info();
-  const Box reach = dilate(info.bounds, 0.1);
-  const glm::ivec3 lower(glm::floor(level_set.data().index_from_world.point(reach.lower)));
-  const glm::ivec3 upper(glm::ceil(level_set.data().index_from_world.point(reach.upper)));
-  const double half_width = settings.half_width_voxels * settings.voxel_size;
-  DistanceEvaluator whole(field);
-  const auto accessor = level_set.data().accessor();
-  std::int64_t active = 0;
-  double worst = 0.0;
-  for (int x = lower.x; x <= upper.x; ++x)
-    for (int y = lower.y; y <= upper.y; ++y) {
-      std::vector<glm::dvec3> points;
-      for (int z = lower.z; z <= upper.z; ++z) points.push_back(info.world_from_index.point({x, y, z}));
-      std::vector<double> distances(points.size());
-      signed_distances(whole, points, half_width, distances);
-      for (size_t k = 0; k < points.size(); ++k) {
-        const nanovdb::Coord at(x, y, lower.z + static_cast<int>(k));
-        const double value = static_cast<double>(accessor.getValue(at));
-        // At the band's end the lattice's own coordinates round differently.
-        if (std::abs(std::abs(distances[k]) - half_width) > 1e-9) {
-          ASSERT_EQ(accessor.isActive(at), std::abs(distances[k]) < half_width) << x << " " << y << " " << at[2];
-        }
-        if (!accessor.isActive(at)) continue;
-        ++active;
-        worst = std::max(worst, std::abs(value - distances[k]) / settings.voxel_size);
-      }
-    }
-  EXPECT_GT(active, 100'000);
-  EXPECT_LT(worst, 1e-5);
+  const BesideDistances found = beside_distances(field, settings);
+  EXPECT_EQ(found.wrongly, 0);
+  EXPECT_GT(found.active, 100'000);
+  EXPECT_LT(found.worst_voxels, 1e-5);
+}
+
+TEST(LevelSetFromField, OfAFormulaThatIsFarSteeperElsewhereItIsThatOfItsDistances) {
+  const unsigned seed = random_seed();
+  std::mt19937_64 random(seed);
+  for (int i = 0; i < 2; ++i) {
+    const auto number = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+    const Field field = quartic(number(3.5, 5.5), number(3.5, 5.5), number(3.5, 5.5), number(8.0, 11.0));
+    const BesideDistances found = beside_distances(field, {.voxel_size = 0.04, .half_width_voxels = number(2.0, 5.0)});
+    EXPECT_EQ(found.wrongly, 0) << "seed " << seed;
+    EXPECT_GT(found.active, 30'000) << "seed " << seed;
+    EXPECT_LT(found.worst_voxels, 1e-5) << "seed " << seed;
+  }
 }
 
 TEST(LevelSetFromField, WhatCannotBeBuiltIsRefusedWithTheFigure) {

@@ -7,6 +7,7 @@
 
 #include "random_field.h"
 #include "sdf/error.h"
+#include "sdf/project_to_surface.h"
 #include "tests/contract_shapes.h"
 
 namespace limn {
@@ -136,6 +137,24 @@ RC_GTEST_PROP(Shape, ProjectionComesOntoTheSurfaceNearby, (std::uint64_t seed)) 
     }
   }
   RC_ASSERT(reached >= tried * 8 / 10);
+}
+
+RC_GTEST_PROP(Shape, ManyPointsAreProjectedTogetherAsEachByItself, (std::uint64_t seed)) {
+  Random random(seed);
+  const Field field = random_field(random, 3);
+  FieldEvaluator evaluator(field), single(field);
+  std::vector<glm::dvec3> points;
+  for (int i = 0; i < 20; ++i) points.push_back(random.point(2.0));
+  const std::vector<SurfaceProjection> together =
+      project_together([&](std::span<const glm::dvec3> asked, std::span<double> values,
+                           std::span<glm::dvec3> gradients) { evaluator.gradients(asked, values, gradients); },
+                       points, extent_of(field.traits().bounds), 1e-9);
+  RC_ASSERT(together.size() == points.size());
+  for (size_t i = 0; i < points.size(); ++i) {
+    glm::dvec3 alone = points[i];
+    RC_ASSERT(project_to_surface(single, alone, 1e-9) == together[i].reached());
+    RC_ASSERT(alone == together[i].position());
+  }
 }
 
 TEST(Shape, ProjectionWorksFarFromTheOriginAndFailsInACentre) {

@@ -11,23 +11,25 @@
 #include "sdf/field_program.h"
 #include "sdf/level_set.h"
 #include "sdf/local_grid.h"
+#include "sdf/tape.h"
 #include "subdiv/tessellate.h"
 
 namespace limn {
 namespace {
 
-// Milliseconds and bytes of the parts, fitted to the built-in scenes on two cores. Memory is what building takes, not what is left of it.
-constexpr double kModelMs = 5.0, kFaceMs = 2e-3, kFieldFaceMs = 4e-3, kFieldFaceTermMs = 2e-4, kFaceBytes = 600.0;
-constexpr double kCageFaceMs = 0.15;  // of a field's cage, which is looked for in several samplings
-constexpr double kResampleMs = 1e-3;  // a voxel of either grid
-constexpr double kVoxelMs = 2.5e-4, kMeshVoxelMs = 1.2e-3, kGridBytes = 1.7e6;
+// Milliseconds and bytes of the parts, fitted to the built-in scenes, cages, scans and .vm files on two cores of an Intel Xeon of 2023 with
+// AVX-512: most are right to a factor of two there. Memory is what building takes, not what is left of it.
+constexpr double kModelMs = 1.0, kFaceMs = 3e-4, kFieldFaceMs = 6e-4, kFieldFaceFormulaMs = 3.6e-4, kFaceBytes = 600.0;
+constexpr double kCageFaceMs = 0.025, kCagePartMs = 8.0;  // of a field's cage: samplings, and creases between parts
+constexpr double kResampleMs = 1e-3;                     // a voxel of either grid
+constexpr double kVoxelMs = 3.8e-5, kMeshVoxelMs = 1.1e-4, kMeshVoxelFaceMs = 1.1e-3, kGridBytes = 1.7e6;
 // Peaks of ellipsoid and gyroid, 256 to 1024 voxels, bands of 2.45 to 8: blocks of 8^3 go by the surface, the grid that stays by the band.
-constexpr double kVoxelBytes = 9.6, kSurfaceCellBytes = 107.0;
-constexpr double kPictureMs = 1.5, kMeshRayMs = 6e-6, kGridRayMs = 1e-5, kFieldRayMs = 1e-5;
-// At 640x360; a limit surface has as much as a field of many terms.
-constexpr double kTruthTermMs = 0.035, kLimitTerms = 8000.0;
-/// What a further term adds to a field's cost, as a share of the first: most are skipped by bounds.
-constexpr double kTermShare = 0.1;
+constexpr double kVoxelBytes = 9.6, kSurfaceCellBytes = 107.0, kVoxelPartBytes = 0.07;
+constexpr double kPictureMs = 0.5, kMeshRayMs = 2.5e-6, kDrawnFaceMs = 4e-5, kGridRayMs = 6e-6, kFieldRayMs = 5e-6;
+// At 640x360; a limit surface has as much to look through as a field's cage of so many faces.
+constexpr double kTruthFaceMs = 0.035, kLimitFaces = 1100.0, kBorderMs = 0.75;
+/// What a further part adds to a field's cost, as a share of the first: most are skipped by bounds.
+constexpr double kPartShare = 0.012;
 /// Expected milliseconds that a kind of work must have done before its own speed counts more than what was thought of it.
 constexpr double kTrustMs = 200.0;
 
@@ -69,7 +71,34 @@ double area_of(const Field& field) {
   return crossings * cell * cell / 1.5;
 }
 
-double terms_of(const Field& field) { return std::max(1.0, 0.5 * static_cast<double>(field.program().instructions.size())); }
+/// How long a step of a formula takes, of an addition as 1.
+double weight_of(TapeOperation operation) {
+  switch (operation) {
+    case TapeOperation::norm2:
+    case TapeOperation::norm3:
+      return 2.0;
+    case TapeOperation::smooth_minimum:
+    case TapeOperation::smooth_maximum:
+      return 4.0;
+    case TapeOperation::sine:
+    case TapeOperation::cosine:
+      return 5.0;
+    case TapeOperation::power_norm:
+    case TapeOperation::shape:
+      return 14.0;
+    default:
+      return 1.0;
+  }
+}
+
+void count_formula(const Field& field, SceneSize::Object& size) {
+  constexpr double kOfEllipsoid = 9.0;
+  const FieldTape tape(field);
+  size.parts = std::max(1.0, static_cast<double>(tape.leaves.size()));
+  double sum = 0.0;
+  for (const TapeStep& step : tape.steps) sum += weight_of(step.operation);
+  size.formula = sum / size.parts / kOfEllipsoid;
+}
 
 SceneSize::Object size_of(const SceneObject& object, const SurfaceSettings& settings, bool with_cages) {
   SceneSize::Object size;
@@ -77,7 +106,7 @@ SceneSize::Object size_of(const SceneObject& object, const SurfaceSettings& sett
   if (box.finite()) size.longest_side = box.longest_side();
   if (const auto* field = std::get_if<Field>(&object.source)) {
     size.is_field = true;
-    size.terms = terms_of(*field);
+    count_formula(*field, size);
     if (!box.finite() || box.empty()) return size;
     size.refines = true;
     if (!with_cages) {
@@ -122,14 +151,15 @@ double voxels_of(const SceneSize::Object& object, const SurfaceSettings& setting
   return std::min(2.0 * half_width * object.area / (voxel * voxel), side * side * side);
 }
 
-double terms_factor(const SceneSize::Object& object) { return 1.0 + kTermShare * (object.terms - 1.0); }
+/// What the field costs, of an ellipsoid as 1.
+double formula_cost(const SceneSize::Object& object) { return object.formula * (1.0 + kPartShare * (object.parts - 1.0)); }
 
 void add_mesh(const SceneSize::Object& object, const SurfaceSettings& settings, double pixels, bool traced, ExpectedCost& cost) {
   const double faces = faces_of(object, settings.level);
-  if (object.is_field) cost.build_ms += kCageFaceMs * object.faces;
-  cost.build_ms += kModelMs + faces * (object.is_field ? kFieldFaceMs + kFieldFaceTermMs * (object.terms - 1.0) : kFaceMs);
+  if (object.is_field) cost.build_ms += kCageFaceMs * object.faces + kCagePartMs * (object.parts - 1.0);
+  cost.build_ms += kModelMs + faces * (object.is_field ? kFieldFaceMs + kFieldFaceFormulaMs * formula_cost(object) : kFaceMs);
   cost.bytes += static_cast<std::int64_t>(faces * kFaceBytes);
-  if (traced) cost.trace_ms += pixels * kMeshRayMs * (1.0 + 0.05 * std::log2(1.0 + faces));
+  if (traced) cost.trace_ms += pixels * kMeshRayMs + faces * kDrawnFaceMs;
 }
 
 void add_grid(const SceneSize::Object& object, const SurfaceSettings& settings, double pixels, double voxel_ms, ExpectedCost& cost) {
@@ -139,7 +169,9 @@ void add_grid(const SceneSize::Object& object, const SurfaceSettings& settings, 
   const double voxels = loaded ? object.own_voxels : voxels_of(object, settings, half_width);
   if (!loaded) cost.build_ms += kModelMs + voxels * voxel_ms;
   if (!loaded && object.own_voxels > 0.0) cost.build_ms += kResampleMs * (voxels + object.own_voxels);
-  cost.bytes += static_cast<std::int64_t>(kGridBytes + voxels * (kVoxelBytes + kSurfaceCellBytes / (2.0 * half_width)));
+  const double voxel_bytes =
+      kVoxelBytes + kSurfaceCellBytes / (2.0 * half_width) + (object.is_field ? kVoxelPartBytes * object.parts : 0.0);
+  cost.bytes += static_cast<std::int64_t>(kGridBytes + voxels * voxel_bytes);
   cost.trace_ms += pixels * kGridRayMs * (gradient.order >= 3 ? 1.5 : 1.0);
 }
 
@@ -151,14 +183,14 @@ SceneSize size_of(const Scene& scene, const SurfaceSettings& settings, bool with
   return size;
 }
 
-double truth_terms(const SceneSize& size) {
-  double terms = 0.0;
+double border_faces(const SceneSize& size) {
+  double faces = 0.0;
   bool limits = false;
   for (const SceneSize::Object& object : size.objects) {
-    terms += object.is_field ? object.faces * terms_factor(object) : 0.0;
+    faces += object.is_field ? object.faces : 0.0;
     limits = limits || (object.refines && !object.is_field);
   }
-  return terms + (limits ? kLimitTerms : 0.0);
+  return faces + (limits ? kLimitFaces : 0.0);
 }
 
 double faces_at_level(const SceneSize& size, int level) {
@@ -175,21 +207,27 @@ ExpectedCost expected_cost(const SceneSize& size, const SurfaceSettings& setting
   for (const SceneSize::Object& object : size.objects) {
     std::string kind = settings.kind;
     if (kind.empty()) kind = object.own_voxels > 0.0 ? "level_set" : object.faces > 0.0 ? "mesh" : "analytic";
-    if (kind == "analytic") cost.trace_ms += share * kFieldRayMs * terms_factor(object);
+    if (kind == "analytic") cost.trace_ms += share * kFieldRayMs * formula_cost(object);
     if (kind == "mesh") add_mesh(object, settings, share, true, cost);
-    if (kind == "level_set") add_grid(object, settings, share, kVoxelMs * terms_factor(object), cost);
+    if (kind == "level_set") add_grid(object, settings, share, kVoxelMs * formula_cost(object), cost);
     if (kind == "mesh_level_set") {
       SceneSize::Object remeshed = object;
       remeshed.own_voxels = 0.0;
       add_mesh(object, settings, share, false, cost);
+      cost.build_ms += kMeshVoxelFaceMs * faces_of(object, settings.level);
       add_grid(remeshed, settings, share, kMeshVoxelMs, cost);
     }
   }
   return cost;
 }
 
-double cell_ms(double pixels) { return 10.0 + pixels * 3e-4; }
-double truth_ms(double pixels, double terms) { return 30.0 + pixels * 2.5e-4 + kTruthTermMs * terms * std::sqrt(pixels / 230'400.0); }
+namespace {
+/// Curves grow by a picture's side.
+double side_of(double pixels) { return std::sqrt(pixels / 230'400.0); }
+}  // namespace
+
+double cell_ms(double pixels, double faces) { return 6.0 + pixels * 2e-5 + kBorderMs * std::sqrt(faces) * side_of(pixels); }
+double truth_ms(double pixels, double faces) { return 8.0 + pixels * 5e-5 + kTruthFaceMs * faces * side_of(pixels); }
 
 void CostLedger::learn(const std::string& kind, double expected_ms, double took_ms) {
   Entry& entry = entries_[kind];

@@ -25,7 +25,8 @@ struct SceneSize {
     double area = 0.0;          ///< World.
     double longest_side = 0.0;  ///< World.
     bool is_field = false;      ///< Analytic.
-    double terms = 1.0;         ///< How much longer than one shape's formula the field takes, roughly.
+    double parts = 1.0;         ///< Shapes that the field is put together from.
+    double formula = 1.0;       ///< How long a part's formula takes on average, of an ellipsoid's as 1, roughly.
     double own_voxels = 0.0;    ///< Of a volume as loaded.
     std::string cannot_mesh{};  ///< Why no mesh of it can be made, where that was tried.
   };
@@ -37,12 +38,12 @@ SceneSize size_of(const Scene& scene, const SurfaceSettings& settings, bool with
 
 /// Of one model of the scene; `pixels` are those of a picture.
 ExpectedCost expected_cost(const SceneSize& size, const SurfaceSettings& settings, double pixels);
-/// What truth has to look through: a field's cage, the richer the finer, times its terms.
-double truth_terms(const SceneSize& size);
-/// To solve the truth of one view and threshold; `terms` as truth_terms() has them.
-double truth_ms(double pixels, double terms);
-/// To draw and measure one cell.
-double cell_ms(double pixels);
+/// What borders have to be looked for in, as faces of a field's cage: the richer the shape, the finer that is.
+double border_faces(const SceneSize& size);
+/// To solve the truth of one view and threshold; `faces` as border_faces() has them.
+double truth_ms(double pixels, double faces);
+/// To draw and measure one cell, the same.
+double cell_ms(double pixels, double faces);
 /// Faces that the objects which refine have at a level.
 double faces_at_level(const SceneSize& size, int level);
 

@@ -22,8 +22,8 @@ constexpr double kPngBytes = 12.0, kColorSumBytes = 16.0;
 // pixels were; of pictures that are not drawn tile by tile some of this again for each sample.
 constexpr double kWatchedBytes = 120.0, kWatchedBeforeBytes = 15.0, kKeptSampleBytes = 57.0;
 constexpr double kMatteBytes = 90.0;  // indices and counts of the samples, colours, and a level of ids and coverages of each kind
-constexpr double kMethodMs = 4e-5, kExrMs = 1.5e-4, kImageMs = 1e-4;  // a pixel
-constexpr double kStartMs = 50.0;
+constexpr double kPixelMethodMs = 1e-6, kMethodMs = 3e-5, kExrMs = 1e-4, kImageMs = 5e-6;  // a pixel
+constexpr double kStartMs = 8.0;
 /// A machine is rarely more than twice as fast as that of the constants.
 constexpr double kTimeTrust = 2.0;
 
@@ -138,7 +138,8 @@ PictureLoad picture_load(const Camera& camera, const PictureSettings& picture, c
   if (picture.mattes) load.bytes_per_pixel += kMatteBytes;
   load.pictures = static_cast<double>(views) * picture.samples;
   load.other_ms =
-      load.pixels * (load.pictures * kMethodMs * static_cast<double>(picture.methods.size()) + views * (writes_layers ? kExrMs : kImageMs));
+      load.pixels * (load.pictures * (is_pixel_wise(picture) ? kPixelMethodMs : kMethodMs) * static_cast<double>(picture.methods.size()) +
+                     views * (writes_layers ? kExrMs : kImageMs));
   return load;
 }
 

@@ -282,7 +282,7 @@ Study plan_with(const Given& given, const DefaultAxes& defaults) {
   study.input_hash = given.input_hash;
   study.flicker = spec.sweep.flicker;
   study.truth_reference = spec.experiment.reference.value_or(TruthReference::given);
-  study.truth_terms = truth_terms(given.size);
+  study.border_faces = border_faces(given.size);
   const CameraSettings camera = study_camera(spec.experiment.camera, given.input);
   const int views = spec.sweep.views.value_or(defaults.views);
   refuse_eye_of_views(spec.experiment.camera, views);

@@ -8,8 +8,8 @@
 
 namespace limn {
 
-double Study::measure_ms() const { return cell_ms(pixels()); }
-double Study::truth_ms() const { return limn::truth_ms(pixels(), truth_terms); }
+double Study::measure_ms() const { return cell_ms(pixels(), border_faces); }
+double Study::truth_ms() const { return limn::truth_ms(pixels(), border_faces); }
 
 StudyRow row_of(const Study& study, const StudyCell& cell) {
   const StudyModel& model = study.models[cell.model];

@@ -66,7 +66,7 @@ struct Study {
   double waiting_bytes = 128e6;                            ///< See Experiment. 0 where memory is limited.
   StudyHead head{};                                        ///< What the folder says of it.
   double longest_side = 0.0;                               ///< World, of the scene.
-  double truth_terms = 0.0;  ///< How much there is to trace for truth: grows with what a field's surface has of shape.
+  double border_faces = 0.0;                               ///< See border_faces(): what truths and measurements take grows with it.
 
   double looks() const { return flicker ? double{kFlickerPath.frames} : 1.0; }  ///< Pictures traced of each model in each view.
   double measure_ms() const;                                                    ///< Expected for one cell: ink, curves and metrics.

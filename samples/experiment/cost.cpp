@@ -21,13 +21,13 @@ namespace {
 // AVX-512: most are right to a factor of two there. Memory is what building takes, not what is left of it.
 constexpr double kModelMs = 1.0, kFaceMs = 3e-4, kFieldFaceMs = 6e-4, kFieldFaceFormulaMs = 3.6e-4, kFaceBytes = 600.0;
 constexpr double kCageFaceMs = 0.025, kCagePartMs = 8.0;  // of a field's cage: samplings, and creases between parts
-constexpr double kResampleMs = 1e-3;                     // a voxel of either grid
+constexpr double kResampleMs = 1e-3;                      // a voxel of either grid
 constexpr double kVoxelMs = 3.8e-5, kMeshVoxelMs = 1.1e-4, kMeshVoxelFaceMs = 1.1e-3, kGridBytes = 1.7e6;
 // Peaks of ellipsoid and gyroid, 256 to 1024 voxels, bands of 2.45 to 8: blocks of 8^3 go by the surface, the grid that stays by the band.
 constexpr double kVoxelBytes = 9.6, kSurfaceCellBytes = 107.0, kVoxelPartBytes = 0.07;
 constexpr double kPictureMs = 0.5, kMeshRayMs = 2.5e-6, kDrawnFaceMs = 4e-5, kGridRayMs = 6e-6, kFieldRayMs = 5e-6;
-// At 640x360; a limit surface has as much to look through as a field's cage of so many faces.
-constexpr double kTruthFaceMs = 0.035, kLimitFaces = 1100.0, kBorderMs = 0.75;
+// At 640x360; a limit surface, or a mesh as it was loaded, has as much to look through as a field's cage of so many faces.
+constexpr double kTruthFaceMs = 0.035, kLimitFaces = 1100.0, kLoadedFaces = 2500.0, kBorderMs = 0.75;
 /// What a further part adds to a field's cost, as a share of the first: most are skipped by bounds.
 constexpr double kPartShare = 0.012;
 /// Expected milliseconds that a kind of work must have done before its own speed counts more than what was thought of it.
@@ -184,13 +184,14 @@ SceneSize size_of(const Scene& scene, const SurfaceSettings& settings, bool with
 }
 
 double border_faces(const SceneSize& size) {
-  double faces = 0.0;
-  bool limits = false;
+  double of_fields = 0.0, of_others = 0.0;
   for (const SceneSize::Object& object : size.objects) {
-    faces += object.is_field ? object.faces : 0.0;
-    limits = limits || (object.refines && !object.is_field);
+    if (object.is_field)
+      of_fields += object.faces;
+    else
+      of_others = std::max(of_others, object.refines ? kLimitFaces : kLoadedFaces);
   }
-  return faces + (limits ? kLimitFaces : 0.0);
+  return of_fields + of_others;
 }
 
 double faces_at_level(const SceneSize& size, int level) {

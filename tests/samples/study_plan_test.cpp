@@ -231,6 +231,26 @@ TEST(StudyCost, GrowsAsFacesVoxelsAndPixelsDo) {
   EXPECT_NEAR(growth(grid(64, 64).trace_ms, grid(64, 128).trace_ms, grid(64, 256).trace_ms), 4.0, 1e-6);
 }
 
+// Level sets of 256 voxels, built on two cores of an Intel Xeon with AVX-512 (limn render SCENE --surface level_set --verbose), ms.
+TEST(StudyCost, FieldsOfManyPartsTakeWhatTheyTookWhereTheyWereMeasured) {
+  const auto expected_ms = [](const std::string& scene) {
+    const SceneInput input = load_input(one_cell(scene).experiment);
+    SurfaceSettings settings;
+    settings.kind = "level_set";
+    settings.voxels = 256;
+    return expected_cost(size_of(input.scene, settings, false), settings, 0.0).build_ms;
+  };
+  constexpr double kEllipsoid_ms = 26.0;
+  const std::pair<const char*, double> measured[] = {{"superellipsoid", 117.0}, {"machined_part", 45.0}, {"gyroid", 184.0},
+                                                     {"fused_spheres", 61.0},   {"passing_tori", 34.0},  {"honeycomb", 518.0}};
+  const double ellipsoid = expected_ms("ellipsoid");
+  for (const auto& [scene, ms] : measured) {
+    const double share = expected_ms(scene) / ellipsoid / (ms / kEllipsoid_ms);
+    EXPECT_GT(share, 0.5) << scene;
+    EXPECT_LT(share, 2.0) << scene;
+  }
+}
+
 TEST(StudyCost, TheLedgerLearnsHowFastTheMachineIs) {
   CostLedger ledger;
   ledger.plan("build", 1e6);

@@ -23,42 +23,43 @@ RegisterProgram with_registers(const Program& program);
 /// True where every operation can be recorded (sdf/number_recorded.h) and so run in SIMD lanes.
 bool recordable(const Program& program);
 
-template <class T>
-T one_step(const RegisterStep& step, const T& a, const T& b, const T& c) {
+/// Calls `body` with the function of three operands that a step stands for: told once for all points.
+template <class T, class Body>
+void with_operation(const RegisterStep& step, const Body& body) {
   switch (step.operation) {
     case Operation::negate:
-      return -a;
+      return body([](const T& a, const T&, const T&) { return -a; });
     case Operation::absolute:
-      return abs(a);
+      return body([](const T& a, const T&, const T&) { return abs(a); });
     case Operation::square:
-      return checked(square(a));
+      return body([](const T& a, const T&, const T&) { return checked(square(a)); });
     case Operation::sine:
-      return checked(sine(a));
+      return body([](const T& a, const T&, const T&) { return checked(sine(a)); });
     case Operation::cosine:
-      return checked(cosine(a));
+      return body([](const T& a, const T&, const T&) { return checked(cosine(a)); });
     case Operation::add_constant:
-      return a + scalar<T>(step.constant);
+      return body([&step](const T& a, const T&, const T&) { return a + scalar<T>(step.constant); });
     case Operation::multiply_constant:
-      return a * scalar<T>(step.constant);
+      return body([&step](const T& a, const T&, const T&) { return a * scalar<T>(step.constant); });
     case Operation::add:
-      return checked(a + b);
+      return body([](const T& a, const T& b, const T&) { return checked(a + b); });
     case Operation::subtract:
-      return checked(a - b);
+      return body([](const T& a, const T& b, const T&) { return checked(a - b); });
     case Operation::multiply:
-      return multiplied(a, b);
+      return body([](const T& a, const T& b, const T&) { return multiplied(a, b); });
     case Operation::minimum:
-      return minimum(a, b);
+      return body([](const T& a, const T& b, const T&) { return minimum(a, b); });
     case Operation::maximum:
-      return maximum(a, b);
+      return body([](const T& a, const T& b, const T&) { return maximum(a, b); });
     case Operation::norm2:
-      return checked(norm(a, b));
+      return body([](const T& a, const T& b, const T&) { return checked(norm(a, b)); });
     case Operation::norm3:
-      return checked(norm(a, b, c));
+      return body([](const T& a, const T& b, const T& c) { return checked(norm(a, b, c)); });
     default:
       if constexpr (std::same_as<T, Recorded>) {
-        return a;
+        return body([](const T& a, const T&, const T&) { return a; });
       } else {
-        return unary_of(step.operation, a);
+        return body([&step](const T& a, const T&, const T&) { return unary_of(step.operation, a); });
       }
   }
 }
@@ -85,7 +86,9 @@ void run(const RegisterProgram& program, const T* x, const T* y, const T* z, T* 
         break;
       default: {
         const T *const a = at(step.a), *const b = at(step.b), *const c = at(step.c);
-        for (size_t i = 0; i < count; ++i) target[i] = one_step(step, a[i], b[i], c[i]);
+        with_operation<T>(step, [&](const auto& operation) {
+          for (size_t i = 0; i < count; ++i) target[i] = operation(a[i], b[i], c[i]);
+        });
       }
     }
   }

@@ -1,7 +1,9 @@
 #include "sdf/vm/extent.h"
 
 #include <algorithm>
+#include <array>
 #include <queue>
+#include <span>
 
 namespace limn::vm {
 namespace {
@@ -16,11 +18,14 @@ class Evaluator {
  public:
   explicit Evaluator(const RegisterProgram& program) : program_(program) {}
 
-  Interval over(const Box& box) {
-    const Interval x{box.lower.x, box.upper.x}, y{box.lower.y, box.upper.y}, z{box.lower.z, box.upper.z};
-    Interval value;
-    run(program_, &x, &y, &z, &value, 1, intervals_);
-    return checked(value);
+  /// Of a box and its halves along three axes at most.
+  static constexpr size_t kMostBoxes = 6;
+  void over(std::span<const Box> boxes, std::span<Interval> values) {
+    Interval at[3][kMostBoxes];
+    for (size_t k = 0; k < boxes.size(); ++k)
+      for (int axis = 0; axis < 3; ++axis) at[axis][k] = {boxes[k].lower[axis], boxes[k].upper[axis]};
+    run(program_, at[0], at[1], at[2], values.data(), boxes.size(), intervals_);
+    for (Interval& value : values) value = checked(value);
   }
   double at(const glm::dvec3& p) {
     double value = 0.0;
@@ -75,8 +80,12 @@ struct Search {
     }
     return side;
   }
-  /// How far the bounds over a box lie below the level; 0: it holds nothing.
-  double deficit(const Box& box) const { return std::min(std::max(level - evaluator.over(box).lower, 0.0), 1e200); }
+  /// How far the bounds over boxes lie below the level; 0: one holds nothing.
+  void deficits(std::span<const Box> boxes, double* to) const {
+    std::array<Interval, Evaluator::kMostBoxes> values;
+    evaluator.over(boxes, std::span(values).first(boxes.size()));
+    for (size_t k = 0; k < boxes.size(); ++k) to[k] = std::min(std::max(level - values[k].lower, 0.0), 1e200);
+  }
 
   /// A box in two, with the deficits of both.
   struct Halves {
@@ -84,22 +93,28 @@ struct Search {
     double deficit[2] = {kInfinity, kInfinity};
     double sum() const { return deficit[0] + deficit[1]; }
   };
-  Halves halves_along(const Box& box, int cut_axis) const {
-    Halves halves{{box, box}};
-    const double cut = cut_of(box.lower[cut_axis], box.upper[cut_axis]);
-    halves.box[0].upper[cut_axis] = halves.box[1].lower[cut_axis] = cut;
-    for (int k = 0; k < 2; ++k) halves.deficit[k] = deficit(halves.box[k]);
-    return halves;
-  }
   /// Along the longest side if that tells something; else where it tells most: a long side counts for nothing where the value hardly
   /// depends on it.
   Halves best_halves(const Candidate& candidate) const {
     constexpr double kTelling = 0.75;
-    Halves best, longest;
-    double side = -1.0;
+    // All halves are asked together: reading the program's steps takes longer than a bound.
+    std::array<Box, Evaluator::kMostBoxes> boxes;
+    std::array<double, Evaluator::kMostBoxes> found;
+    size_t count = 0;
     for (int i = 0; i < 3; ++i) {
       if (!reads_axis[i]) continue;
-      const Halves halves = halves_along(candidate.box, i);
+      boxes[count] = boxes[count + 1] = candidate.box;
+      boxes[count].upper[i] = boxes[count + 1].lower[i] = cut_of(candidate.box.lower[i], candidate.box.upper[i]);
+      count += 2;
+    }
+    deficits(std::span(boxes).first(count), found.data());
+    Halves best, longest;
+    double side = -1.0;
+    size_t at = 0;
+    for (int i = 0; i < 3; ++i) {
+      if (!reads_axis[i]) continue;
+      const Halves halves{{boxes[at], boxes[at + 1]}, {found[at], found[at + 1]}};
+      at += 2;
       if (halves.sum() < best.sum()) best = halves;
       const double length = candidate.box.upper[i] - candidate.box.lower[i];
       if (length > side) longest = halves, side = length;
@@ -111,7 +126,9 @@ struct Search {
   /// How far anything reaches at most; -infinity where there is nothing. `outside`: a point was found close to the region's end.
   double run(const Box& region, double tolerance, bool& outside) const {
     std::priority_queue<Candidate> queue;
-    if (const double first = deficit(region); first > 0.0) queue.push({region, reach(region), first});
+    double first = 0.0;
+    deficits(std::span(&region, 1), &first);
+    if (first > 0.0) queue.push({region, reach(region), first});
     for (int looked = 0; !queue.empty(); ++looked) {
       const Candidate farthest = queue.top();
       if (farthest.reach >= kFarthest) {

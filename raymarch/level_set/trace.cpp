@@ -151,8 +151,8 @@ struct Search {
   IndexRays rays;  ///< By the index coordinates of the size that is searched.
   BrickHits found;
   Waiting waiting;
-  std::int32_t cell[kRayBatchSize];  ///< Of all sizes.
-  std::uint8_t size[kRayBatchSize];  ///< Whose cell it is.
+  alignas(64) std::int32_t cell[kRayBatchSize];  ///< Of all sizes.
+  alignas(64) std::int32_t size[kRayBatchSize];  ///< Whose cell it is.
 };
 
 void start(const RayBatch& rays, Search& search) {
@@ -160,6 +160,7 @@ void start(const RayBatch& rays, Search& search) {
   std::copy_n(rays.t_max, count, search.found.t);
   std::fill_n(search.found.cell, count, -1);
   std::fill_n(search.cell, count, -1);
+  std::fill_n(search.size, count, -1);
 }
 
 /// Roots in bricks of one size, nearer than those found before.
@@ -261,24 +262,30 @@ HWY_NOINLINE void search_tree(const BrickTrace& what, const BrickTree& tree, con
 }
 
 /// Roots found last lie nearer than those of the sizes before.
-void take(size_t size, size_t count, Search& search) {
-  for (size_t i = 0; i < count; ++i) {
-    if (search.found.cell[i] < 0) continue;
-    search.cell[i] = search.found.cell[i];
-    search.size[i] = static_cast<std::uint8_t>(size);
-    search.found.cell[i] = -1;
+void take(std::int32_t size, size_t count, Search& search) {
+  const I di;
+  const VI none = hn::Set(di, -1);
+  for (size_t i = 0; i < count; i += hn::Lanes(di)) {
+    const VI cell = hn::Load(di, search.found.cell + i);
+    const auto found = hn::Gt(cell, none);
+    hn::BlendedStore(cell, found, di, search.cell + i);
+    hn::BlendedStore(hn::Set(di, size), found, di, search.size + i);
+    hn::Store(none, di, search.found.cell + i);
   }
 }
 
 /// The cells of one size; false where there are none.
-bool select(size_t size, size_t count, Search& search) {
-  bool any = false;
-  for (size_t i = 0; i < count; ++i) {
-    const bool here = search.cell[i] >= 0 && search.size[i] == size;
-    search.found.cell[i] = here ? search.cell[i] : -1;
-    any = any || here;
+bool select(std::int32_t size, size_t count, Search& search) {
+  const I di;
+  const VI none = hn::Set(di, -1);
+  VI most = none;
+  for (size_t i = 0; i < count; i += hn::Lanes(di)) {
+    const auto own = hn::Eq(hn::Load(di, search.size + i), hn::Set(di, size));
+    const VI cell = hn::IfThenElse(own, hn::Load(di, search.cell + i), none);
+    hn::Store(cell, di, search.found.cell + i);
+    most = hn::Max(most, cell);
   }
-  return any;
+  return !hn::AllTrue(di, hn::Eq(most, none));
 }
 
 void write(const BrickTrace* sizes, size_t number, const RayBatch& rays, Search& search, HitBatch& hits) {
@@ -286,7 +293,7 @@ void write(const BrickTrace* sizes, size_t number, const RayBatch& rays, Search&
   for (size_t k = 0; k < number; ++k) {
     if (!sizes[k].view->groups) continue;
     if (number > 1) {
-      if (!select(k, count, search)) continue;
+      if (!select(static_cast<std::int32_t>(k), count, search)) continue;
       to_index_space(sizes[k].view->index_from_render, rays, count, search.rays);
     }
     for (size_t i = 0; i < count; i += lanes) write_packet(sizes[k], search.rays, rays, i, search.found, hits);
@@ -306,7 +313,7 @@ void TraceBricks(const BrickTrace* sizes, size_t number, const BrickTree* const*
       search_tree(sizes[k], *trees[k], rays, search);
     else
       search_tile(sizes[k], tile, rays, search);
-    if (number > 1) take(k, count, search);
+    if (number > 1) take(static_cast<std::int32_t>(k), count, search);
   }
   write(sizes, number, rays, search, hits);
 }

@@ -77,7 +77,7 @@ void CellBounds::bound_branch(const CellScope& scope, size_t at, bool facing) {
   if (!facing) {
     set_direction(beams_, glm::dvec3(0.0), 0.0);
     tape_bounds(tape, steps, beams_, scratch_, bounds.of);
-  } else if (search_.families == 1u && search_.levels[0] == 0.0) {
+  } else if (sees_silhouettes_only()) {
     const bool perspective = search_.camera.projection == Projection::perspective;
     set_direction(beams_, search_.camera.world_from_camera[2], perspective ? half_ : 0.0);
     for (int axis = 0; axis < 3 && perspective; ++axis) {
@@ -106,7 +106,7 @@ std::array<Interval, kCurveFamilies> CellBounds::facing_in(size_t at, size_t lan
     const double reach = perspective ? half_ + kViewMargin * half_ : 0.0;
     view[static_cast<size_t>(axis)] = {along - reach, along + reach};
   }
-  if (search_.families == 1u && search_.levels[0] == 0.0) {
+  if (sees_silhouettes_only()) {
     const double margin = kViewMargin * search_.sharp.branches[0].traits().lipschitz * norm(view[0], view[1], view[2]).upper;
     return {Interval{bounds.of.slope_lower[i] - margin, bounds.of.slope_upper[i] + margin}, Interval{}};
   }
@@ -115,13 +115,23 @@ std::array<Interval, kCurveFamilies> CellBounds::facing_in(size_t at, size_t lan
   return facing_bounds(search_, view, gradient);
 }
 
-/// The tighter of the tape's bounds and what the branch's Lipschitz constant allows about the middle.
+/// The tighter of the tape's bounds and of how far f goes from its value in the middle, by the branch's Lipschitz constant and, where they
+/// are known, by its slopes in the box (the mean value theorem; of functions with creases Lebourg's 1975): sums of powers that nearly
+/// cancel out have bounds many times as wide.
 Interval CellBounds::value_in(const CellScope& scope, size_t at, int lane) const {
-  const LaneBounds& of = bounds_[at].of;
+  const Bounds& bounds = bounds_[at];
+  const LaneBounds& of = bounds.of;
   const double lipschitz = search_.sharp.branches[static_cast<size_t>(scope.branches[at])].traits().lipschitz;
   const auto& origin = beams_.rays.origin;
+  double reach = lipschitz * beams_.radius[lane];
+  if (bounds.facing && !sees_silhouettes_only()) {
+    double along = 0.0;
+    for (const LaneBounds& axis : bounds.along)
+      along += half_ * std::max(std::fabs(axis.slope_lower[lane]), std::fabs(axis.slope_upper[lane]));
+    if (along < reach) reach = along;
+  }
   const double extent = lipschitz * (std::fabs(origin[0][lane]) + std::fabs(origin[1][lane]) + std::fabs(origin[2][lane])),
-               middle = of.middle[lane], reach = lipschitz * beams_.radius[lane], slack = kRounding * (std::fabs(middle) + reach + extent);
+               middle = of.middle[lane], slack = kRounding * (std::fabs(middle) + reach + extent);
   return tighter({of.lower[lane], of.upper[lane]}, {middle - reach - slack, middle + reach + slack});
 }
 

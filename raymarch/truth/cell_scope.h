@@ -60,6 +60,8 @@ class CellBounds {
   CellScope inside(const CellScope& scope, const Survivors& found, size_t lane) const;
 
  private:
+  /// The slope towards the eye is all that is asked for then.
+  bool sees_silhouettes_only() const { return search_.families == 1u && search_.levels[0] == 0.0; }
   void set_boxes(std::span<const glm::dvec3> lower, double side);
   void bound_branch(const CellScope& scope, size_t at, bool facing);
   void find_in(const CellScope& scope, size_t lane, Survivors& found);

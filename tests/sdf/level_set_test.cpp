@@ -1,15 +1,14 @@
 #include "sdf/level_set.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "sdf/error.h"
 #include "sdf/level_set_crossings.h"
 #include "sdf/level_set_data.h"
 #include "sdf/level_set_distance.h"
-#include "sdf/vm_field.h"
 #include "tests/random_seed.h"
 #include "tests/sdf/level_set_maker.h"
+#include "tests/sdf/quartic.h"
 
 namespace limn {
 namespace {
@@ -192,17 +191,6 @@ BesideDistances beside_distances(const Field& field, const LevelSetSettings& set
       }
     }
   return found;
-}
-
-/// x^4 - a x^2 + y^4 - b y^2 + z^4 - c z^2 + d: at the corners of its bounds several times as steep as on the surface.
-Field quartic(double a, double b, double c, double d) {
-  const std::string text = fmt::format(
-      "x var-x\ny var-y\nz var-z\na const {}\nb const {}\nc const {}\nd const {}\n"
-      "x2 square x\ny2 square y\nz2 square z\nx4 square x2\ny4 square y2\nz4 square z2\n"
-      "ax mul a x2\nby mul b y2\ncz mul c z2\npx sub x4 ax\npy sub y4 by\npz sub z4 cz\n"
-      "xy add px py\nxyz add xy pz\nout add xyz d\n",
-      a, b, c, d);
-  return vm_field(text, "quartic.vm").field;
 }
 
 TEST(LevelSetFromField, PartsWithoutInfluenceAreLeftOutWithoutATrace) {

@@ -83,31 +83,35 @@ double exact_within(const Field& field, const Lattice& lattice) {
   return std::max(field.traits().lipschitz, 1.0) * (lattice.half_width + 3.0 * lattice.h);
 }
 
-/// How steep a formula is at most says little of places where it is less so: by bounds of its gradient in reach of the cube. Where these
-/// have told nothing new for some halvings, as of distances, they are not asked for any more.
-void narrow_slope(FieldEvaluator& evaluator, const Box& reach, Cube& cube) {
-  constexpr double kWorthIt = 0.8;
-  const auto [x, y, z] = evaluator.gradient_bounds(reach).gradient;
-  const double steepest = norm(x, y, z).upper;
-  cube.tries = steepest < kWorthIt * cube.lipschitz ? Cube::kNarrowed : cube.tries - 1;
-  if (steepest > 0.0 && steepest < cube.lipschitz) cube.lipschitz = steepest;
+bool is_beyond(const Interval& values, const Cube& cube, const Lattice& lattice) {
+  const double limit = cube.lipschitz * lattice.half_width;
+  return values.lower > limit || values.upper < -limit;
 }
 
 /// False only where no node of the cube lies within the half width of the surface.
-bool may_hold_band(FieldEvaluator& evaluator, const Lattice& lattice, Cube& cube) {
+bool may_hold_band(FieldEvaluator& evaluator, const Lattice& lattice, const Cube& cube) {
   const FieldTraits& traits = evaluator.field().traits();
   const Box nodes = nodes_of(cube, lattice);
   const Box reach = dilate(nodes, lattice.half_width);
-  if (intersect(reach, traits.bounds).empty()) return false;
-  const Interval here = evaluator.bounds(nodes);
-  const auto is_far = [&] {
-    const double limit = cube.lipschitz * lattice.half_width;
-    return here.lower > limit || here.upper < -limit;
-  };
-  if (is_far() || !evaluator.bounds(reach).contains(0.0)) return false;
-  if (cube.tries == 0) return true;
-  narrow_slope(evaluator, reach, cube);
-  return !is_far();
+  if (intersect(reach, traits.bounds).empty() || is_beyond(evaluator.bounds(nodes), cube, lattice)) return false;
+  return evaluator.bounds(reach).contains(0.0);
+}
+
+/// How steep a formula is at most says little of places where it is less so: by bounds of the gradient of the cube's own field in its
+/// reach. Where these have told nothing new for some halvings, as of distances, they are not asked for any more. False as of
+/// may_hold_band().
+bool narrow_slope(FieldEvaluator& outer, const Lattice& lattice, Cube& cube) {
+  constexpr double kWorthIt = 0.8;
+  std::optional<FieldEvaluator> own;
+  if (&cube.field.program() != &outer.field().program()) own.emplace(cube.field);
+  FieldEvaluator& evaluator = own ? *own : outer;
+  const Box nodes = nodes_of(cube, lattice);
+  const auto [x, y, z] = evaluator.gradient_bounds(dilate(nodes, lattice.half_width)).gradient;
+  const double steepest = norm(x, y, z).upper;
+  cube.tries = steepest < kWorthIt * cube.lipschitz ? Cube::kNarrowed : cube.tries - 1;
+  if (!(steepest > 0.0 && steepest < cube.lipschitz)) return true;
+  cube.lipschitz = steepest;
+  return !is_beyond(evaluator.bounds(nodes), cube, lattice);
 }
 
 /// Refused before the memory is taken. Halving the cubes multiplies those on a surface by four.
@@ -137,6 +141,7 @@ std::vector<Cube> split(const std::vector<Cube>& cubes, const Lattice& lattice) 
       child.size = half;
       if (!may_hold_band(evaluator, lattice, child)) continue;
       child.field = restricted_near_surface(cubes[i].field, reach_of(child, lattice), exact_within(cubes[i].field, lattice));
+      if (child.tries > 0 && !narrow_slope(evaluator, lattice, child)) continue;
       kept[i].push_back(std::move(child));
     }
   });

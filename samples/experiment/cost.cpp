@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "raymarch/level_set/level_set_marcher.h"
@@ -23,6 +24,7 @@ constexpr double kModelMs = 1.0, kFaceMs = 3e-4, kFieldFaceMs = 6e-4, kFieldFace
 constexpr double kCageFaceMs = 0.025, kCagePartMs = 8.0;  // of a field's cage: samplings, and creases between parts
 constexpr double kResampleMs = 1e-3;                      // a voxel of either grid
 constexpr double kVoxelMs = 3.8e-5, kMeshVoxelMs = 1.1e-4, kMeshVoxelFaceMs = 1.1e-3, kGridBytes = 1.7e6;
+constexpr double kHoleVoxelMs = 3.5e-4;  // more where the winding number tells what is inside
 // Peaks of ellipsoid and gyroid, 256 to 1024 voxels, bands of 2.45 to 8: blocks of 8^3 go by the surface, the grid that stays by the band.
 constexpr double kVoxelBytes = 9.6, kSurfaceCellBytes = 107.0, kVoxelPartBytes = 0.07;
 constexpr double kPictureMs = 0.5, kMeshRayMs = 2.5e-6, kDrawnFaceMs = 4e-5, kGridRayMs = 6e-6, kFieldRayMs = 5e-6;
@@ -42,6 +44,24 @@ double area_of(const Mesh& mesh) {
     first += static_cast<size_t>(size);
   }
   return area;
+}
+
+bool has_holes(const Mesh& mesh) {
+  std::vector<std::uint64_t> edges;
+  edges.reserve(mesh.corner_vertices.size());
+  size_t first = 0;
+  for (const std::int32_t size : mesh.face_sizes) {
+    const auto vertex = [&](size_t k) { return static_cast<std::uint64_t>(mesh.corner_vertices[first + k % static_cast<size_t>(size)]); };
+    for (size_t k = 0; k < static_cast<size_t>(size); ++k)
+      edges.push_back(std::min(vertex(k), vertex(k + 1)) << 32 | std::max(vertex(k), vertex(k + 1)));
+    first += static_cast<size_t>(size);
+  }
+  std::sort(edges.begin(), edges.end());
+  for (size_t k = 0, next = 0; k < edges.size(); k = next) {
+    while (next < edges.size() && edges[next] == edges[k]) ++next;
+    if (next - k == 1) return true;
+  }
+  return false;
 }
 
 /// By Cauchy and Crofton's formula: on average an edge of a lattice is crossed as often as its share of the area, 2/3 of it an axis.
@@ -129,6 +149,7 @@ SceneSize::Object size_of(const SceneObject& object, const SurfaceSettings& sett
     size.faces = scheme ? static_cast<double>(predict_refined_size(source->mesh, *scheme, 1).faces) / 4.0
                         : static_cast<double>(source->mesh->face_count());
     size.area = scale * scale * area_of(source->mesh);
+    size.has_holes = settings.kind != "mesh" && settings.kind != "analytic" && has_holes(source->mesh);
   } else {
     const auto& volume = std::get<LevelSetSource>(object.source);
     const LevelSetInfo& info = volume.level_set.info();
@@ -216,7 +237,7 @@ ExpectedCost expected_cost(const SceneSize& size, const SurfaceSettings& setting
       remeshed.own_voxels = 0.0;
       add_mesh(object, settings, share, false, cost);
       cost.build_ms += kMeshVoxelFaceMs * faces_of(object, settings.level);
-      add_grid(remeshed, settings, share, kMeshVoxelMs, cost);
+      add_grid(remeshed, settings, share, kMeshVoxelMs + (object.has_holes ? kHoleVoxelMs : 0.0), cost);
     }
   }
   return cost;

@@ -28,6 +28,7 @@ struct SceneSize {
     double parts = 1.0;         ///< Shapes that the field is put together from.
     double formula = 1.0;       ///< How long a part's formula takes on average, of an ellipsoid's as 1, roughly.
     double own_voxels = 0.0;    ///< Of a volume as loaded.
+    bool has_holes = false;     ///< Of a mesh that may become a level set: edges of one face.
     std::string cannot_mesh{};  ///< Why no mesh of it can be made, where that was tried.
   };
   std::vector<Object> objects{};  ///< In the scene's order.

@@ -251,6 +251,19 @@ TEST(StudyCost, FieldsOfManyPartsTakeWhatTheyTookWhereTheyWereMeasured) {
   }
 }
 
+TEST(StudyCost, LevelSetsOfMeshesWithHolesTakeLonger) {
+  const TemporaryFolder folder;
+  const auto build_ms = [&](const std::string& faces) {
+    const std::string file = folder.file("tetrahedron.obj");
+    std::ofstream(file) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n" << faces;
+    SurfaceSettings settings;
+    settings.kind = "mesh_level_set";
+    return expected_cost(size_of(load_input(one_cell(file).experiment).scene, settings), settings, 0.0).build_ms;
+  };
+  const std::string three = "f 1 3 2\nf 1 2 4\nf 1 4 3\n";
+  EXPECT_GT(build_ms(three), 2.0 * build_ms(three + "f 2 3 4\n"));
+}
+
 TEST(StudyCost, TheLedgerLearnsHowFastTheMachineIs) {
   CostLedger ledger;
   ledger.plan("build", 1e6);

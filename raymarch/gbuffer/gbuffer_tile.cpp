@@ -29,13 +29,13 @@ void write_layer(Image<T>& image, const PixelTile& tile, const Value& value) {
 template <class T>
 void copy_layer(Image<T>& image, const PixelTile& tile, const T* lanes) {
   if (image.pixels.empty()) return;
-  const int across = (tile.width + 3) / 4, whole = tile.width / 4;
+  const int whole = tile.width / 4, rest = tile.width % 4;
   for (int y = 0; y < tile.height; ++y) {
     T* const row = &image.pixels[image.index(tile.x, tile.y + y)];
     const T* const from = lanes + lane_of(tile, 0, y);
     for (int x = 0; x < whole; ++x)
       std::memcpy(row + 4 * x, from + 16 * x, 4 * sizeof(T));  // std::copy_n calls memmove, which takes longer than the copy
-    if (whole < across) std::copy_n(from + 16 * whole, tile.width - 4 * whole, row + 4 * whole);
+    std::copy_n(from + 16 * whole, rest, row + 4 * whole);
   }
 }
 

@@ -93,17 +93,17 @@ HWY_INLINE CentralStencil load_central(const std::int16_t* values, const Cells& 
     const auto lane = static_cast<size_t>(hn::FindKnownFirstTrue(di, rest));
     const auto same = hn::And(rest, hn::Eq(number, hn::Set(di, numbers[lane])));
     rest = hn::AndNot(same, rest);
-    const auto four = [&](size_t word, std::int32_t a, std::int32_t b, std::int32_t step) {
+    const auto take = [&](size_t word, std::int32_t a, std::int32_t b, std::int32_t step) {
       words[word] = hn::IfThenElse(same, word_at(values, a), words[word]);
       words[word + 1] = hn::IfThenElse(same, word_at(values, a + step), words[word + 1]);
       words[word + 2] = hn::IfThenElse(same, word_at(values, b), words[word + 2]);
       words[word + 3] = hn::IfThenElse(same, word_at(values, b + step), words[word + 3]);
     };
     const std::int32_t below = at[2][lane], above = at[5][lane] - 2;
-    four(0, at[0][lane], at[3][lane], kStepY);
-    four(4, at[1][lane], at[4][lane], kStepX);
-    four(8, below, below + kStepX, kStepY);
-    four(12, above, above + kStepX, kStepY);
+    take(0, at[0][lane], at[3][lane], kStepY);
+    take(4, at[1][lane], at[4][lane], kStepX);
+    take(8, below, below + kStepX, kStepY);
+    take(12, above, above + kStepX, kStepY);
   }
   const auto four = [&](size_t word) {
     return FourPairs{{pair_of(words[word]), pair_of(words[word + 1]), pair_of(words[word + 2]), pair_of(words[word + 3])}};

@@ -20,7 +20,7 @@ namespace {
 
 constexpr const char* kBorder = "Border";
 constexpr const char* kExecution = "Execution (never changes a pixel)";
-constexpr const char* kLimits = "Limits (estimates are within a factor of two; predicted overruns exit with 2, actual ones with 1)";
+constexpr const char* kLimits = "Limits (estimates are mostly within a factor of two; predicted overruns exit with 2, actual ones with 1)";
 
 void read_compared_surfaces(const std::string& text, Options& options) {
   for (const std::string& name : parse_names(text)) {

@@ -13,6 +13,7 @@
 #include "sdf/level_set.h"
 #include "sdf/local_grid.h"
 #include "sdf/tape.h"
+#include "subdiv/mesh_audit.h"
 #include "subdiv/tessellate.h"
 
 namespace limn {
@@ -47,21 +48,8 @@ double area_of(const Mesh& mesh) {
 }
 
 bool has_holes(const Mesh& mesh) {
-  std::vector<std::uint64_t> edges;
-  edges.reserve(mesh.corner_vertices.size());
-  size_t first = 0;
-  for (const std::int32_t size : mesh.face_sizes) {
-    const auto vertex = [&](size_t k) { return static_cast<std::uint64_t>(mesh.corner_vertices[first + k % static_cast<size_t>(size)]); };
-    for (size_t k = 0; k < static_cast<size_t>(size); ++k)
-      edges.push_back(std::min(vertex(k), vertex(k + 1)) << 32 | std::max(vertex(k), vertex(k + 1)));
-    first += static_cast<size_t>(size);
-  }
-  std::sort(edges.begin(), edges.end());
-  for (size_t k = 0, next = 0; k < edges.size(); k = next) {
-    while (next < edges.size() && edges[next] == edges[k]) ++next;
-    if (next - k == 1) return true;
-  }
-  return false;
+  const Edges edges = build_edges(mesh);
+  return std::any_of(edges.begin(), edges.end(), [](const Edge& edge) { return edge.face_count == 1; });
 }
 
 /// By Cauchy and Crofton's formula: on average an edge of a lattice is crossed as often as its share of the area, 2/3 of it an axis.

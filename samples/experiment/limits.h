@@ -32,7 +32,7 @@ struct PlannedPictures {
 };
 PictureLoad picture_load(const Camera& camera, const PictureSettings& picture, const PlannedPictures& planned);
 
-/// What a call is expected to take: right to a factor of two for memory, for time on a machine like that of the constants.
+/// What a call is expected to take: mostly right to a factor of two, for time on a machine like that of the constants.
 struct CallCost {
   double model_bytes = 0.0, picture_bytes = 0.0, library_bytes = 0.0, time_ms = 0.0;
   double bytes() const { return kProgramBytes + library_bytes + model_bytes + picture_bytes; }

@@ -24,7 +24,7 @@ namespace limn {
 namespace {
 
 constexpr int kDefaultLongestSide_px = 640;
-// What is left to the defaults shall end within two minutes; predictions are right to a factor of two.
+// What is left to the defaults shall end within two minutes; predictions are mostly right to a factor of two.
 constexpr double kDefaultStudy_ms = 60'000.0;
 
 struct ModelMaker {

@@ -9,22 +9,16 @@
 
 #include "sdf/field_leaf_bounds.h"
 #include "sdf/field_program.h"
-#include "sdf/field_restriction.h"
+#include "sdf/level_set_cubes.h"
 #include "sdf/level_set_data.h"
 #include "sdf/level_set_distance.h"
 #include "sdf/level_set_lanes.h"
 #include "sdf/level_set_nano.h"
 #include "sdf/level_set_thin.h"
-#include "sdf/memory_text.h"
 #include "sdf/parallel.h"
-#include "sdf/size_error.h"
 
 namespace limn {
 namespace {
-
-constexpr int kBlock = 8;
-/// What a block costs: NanoVDB's leaf with its share of the nodes above, and about as much for the build's lists and for what rays read.
-constexpr std::int64_t kBlockBytes = 2 * 2152;
 
 [[noreturn]] void refuse(const std::string& field, const std::string& value, const std::string& problem, const std::string& expected) {
   throw InputError({.file = {}, .field = field, .value = value, .problem = problem, .expected = expected});
@@ -47,128 +41,10 @@ class Progress {
   std::mutex mutex_;
 };
 
-/// The lattice of one build: node (i, j, k) stands at origin + h (i, j, k).
-struct Lattice {
-  glm::dvec3 origin;
-  double h = 0.0;
-  double half_width = 0.0;  ///< World.
-  glm::dvec3 node(const glm::ivec3& index) const { return origin + h * glm::dvec3(index); }
-};
-
 /// Multiples of 8h near the centre: index numbers stay small far from the world's origin, and the nodes do not depend on the bounds.
-Lattice lattice_for(const Box& bounds, const LevelSetSettings& settings) {
-  const double step = kBlock * settings.voxel_size;
+BandLattice lattice_for(const Box& bounds, const LevelSetSettings& settings) {
+  const double step = kLevelSetBlock * settings.voxel_size;
   return {glm::round(bounds.center() / step) * step, settings.voxel_size, settings.voxel_size * settings.half_width_voxels};
-}
-
-/// A cube of nodes, `size` to a side (8 times a power of two).
-struct Cube {
-  glm::ivec3 origin;
-  int size;
-  Field field;       ///< The whole one near the surface in reach of the cube's nodes, shorter where some of its parts are of no influence.
-  double lipschitz;  ///< Of the field within the half width of the nodes, no more than its traits'.
-  int tries = kNarrowed;  ///< So many more halvings are tried whether it can be narrowed.
-
-  static constexpr int kNarrowed = 3;
-};
-
-Box nodes_of(const Cube& cube, const Lattice& lattice) { return {lattice.node(cube.origin), lattice.node(cube.origin + (cube.size - 1))}; }
-
-/// Where the cube's field may be asked: the band about its nodes, and what the search for thin places looks at beside the surface in it.
-Box reach_of(const Cube& cube, const Lattice& lattice) { return dilate(nodes_of(cube, lattice), lattice.half_width + 4.0 * lattice.h); }
-
-/// The largest value, either way, of which a build asks more than its sign: what find_band_nodes() takes to reach the far corner of a
-/// sixteenth of a block, and some room for rounding.
-double exact_within(const Field& field, const Lattice& lattice) {
-  return std::max(field.traits().lipschitz, 1.0) * (lattice.half_width + 3.0 * lattice.h);
-}
-
-bool is_beyond(const Interval& values, const Cube& cube, const Lattice& lattice) {
-  const double limit = cube.lipschitz * lattice.half_width;
-  return values.lower > limit || values.upper < -limit;
-}
-
-/// False only where no node of the cube lies within the half width of the surface.
-bool may_hold_band(FieldEvaluator& evaluator, const Lattice& lattice, const Cube& cube) {
-  const FieldTraits& traits = evaluator.field().traits();
-  const Box nodes = nodes_of(cube, lattice);
-  const Box reach = dilate(nodes, lattice.half_width);
-  if (intersect(reach, traits.bounds).empty() || is_beyond(evaluator.bounds(nodes), cube, lattice)) return false;
-  return evaluator.bounds(reach).contains(0.0);
-}
-
-/// How steep a formula is at most says little of places where it is less so: by bounds of the gradient of the cube's own field in its
-/// reach. Where these have told nothing new for some halvings, as of distances, they are not asked for any more. False as of
-/// may_hold_band().
-bool narrow_slope(FieldEvaluator& outer, const Lattice& lattice, Cube& cube) {
-  constexpr double kWorthIt = 0.8;
-  std::optional<FieldEvaluator> own;
-  if (&cube.field.program() != &outer.field().program()) own.emplace(cube.field);
-  FieldEvaluator& evaluator = own ? *own : outer;
-  const Box nodes = nodes_of(cube, lattice);
-  const auto [x, y, z] = evaluator.gradient_bounds(dilate(nodes, lattice.half_width)).gradient;
-  const double steepest = norm(x, y, z).upper;
-  cube.tries = steepest < kWorthIt * cube.lipschitz ? Cube::kNarrowed : cube.tries - 1;
-  if (!(steepest > 0.0 && steepest < cube.lipschitz)) return true;
-  cube.lipschitz = steepest;
-  return !is_beyond(evaluator.bounds(nodes), cube, lattice);
-}
-
-/// Refused before the memory is taken. Halving the cubes multiplies those on a surface by four.
-void check_size(size_t cubes, int size, const LevelSetSettings& settings) {
-  if (static_cast<double>(cubes) * static_cast<double>(kBlockBytes) <= static_cast<double>(settings.max_bytes)) return;
-  const int blocks_along = size / kBlock;
-  const double blocks = static_cast<double>(cubes) * blocks_along * blocks_along;
-  const double bytes = blocks * static_cast<double>(kBlockBytes);
-  const double factor = std::sqrt(bytes / static_cast<double>(settings.max_bytes));
-  throw SizeError({{},
-                   "voxel size",
-                   fmt::format("{:.4g}", settings.voxel_size),
-                   fmt::format("building the level set needs about {} of memory, the limit is {}", memory_text(bytes),
-                               memory_text(static_cast<double>(settings.max_bytes))),
-                   fmt::format("a voxel size of about {:.2g} or more", settings.voxel_size * factor * 1.05)});
-}
-
-/// The octants that may hold a part of the band. Each passes its shortened field on to its own octants.
-std::vector<Cube> split(const std::vector<Cube>& cubes, const Lattice& lattice) {
-  std::vector<std::vector<Cube>> kept(cubes.size());
-  parallel_for(size_t{0}, cubes.size(), [&](size_t i) {
-    FieldEvaluator evaluator(cubes[i].field);
-    const int half = cubes[i].size / 2;
-    for (int octant = 0; octant < 8; ++octant) {
-      Cube child = cubes[i];
-      child.origin += half * glm::ivec3(octant & 1, (octant >> 1) & 1, octant >> 2);
-      child.size = half;
-      if (!may_hold_band(evaluator, lattice, child)) continue;
-      child.field = restricted_near_surface(cubes[i].field, reach_of(child, lattice), exact_within(cubes[i].field, lattice));
-      if (child.tries > 0 && !narrow_slope(evaluator, lattice, child)) continue;
-      kept[i].push_back(std::move(child));
-    }
-  });
-  std::vector<Cube> result;
-  for (std::vector<Cube>& children : kept) std::move(children.begin(), children.end(), std::back_inserter(result));
-  return result;
-}
-
-/// The blocks that may hold a part of the band, in an order that depends on nothing but the field and the lattice.
-std::vector<Cube> band_blocks(const Field& field, const Lattice& lattice, const LevelSetSettings& settings) {
-  const Box& bounds = field.traits().bounds;
-  const Box reach = dilate(bounds, lattice.half_width + lattice.h);
-  const glm::dvec3 lower = glm::floor((reach.lower - lattice.origin) / lattice.h / double{kBlock});
-  const glm::dvec3 upper = glm::ceil((reach.upper - lattice.origin) / lattice.h / double{kBlock});
-  const glm::dvec3 extent = upper - lower;
-  const double longest = std::max({extent.x, extent.y, extent.z, 1.0});
-  if (longest > double{1 << 25})
-    refuse("voxel size", fmt::format("{:.4g}", settings.voxel_size), fmt::format("{:.3g} voxels along the longest side", longest * kBlock),
-           fmt::format("above {:.2g}", bounds.longest_side() * 1e-8));
-  int size = kBlock;
-  while (size < longest * kBlock) size *= 2;
-  std::vector<Cube> cubes{{kBlock * glm::ivec3(lower), size, field, field.traits().lipschitz}};
-  while (!cubes.empty() && cubes.front().size > kBlock) {
-    cubes = split(cubes, lattice);
-    check_size(cubes.size(), cubes.empty() ? kBlock : cubes.front().size, settings);
-  }
-  return cubes;
 }
 
 /// Nodes of a block that may lie in the band, by sixteen: four along y by four along z.
@@ -183,15 +59,15 @@ struct BandNodes {
 
 /// Coordinates of a block's nodes.
 struct NodePlaces {
-  NodePlaces(const Cube& cube, const Lattice& lattice) {
-    for (int k = 0; k < kBlock; ++k) along[static_cast<size_t>(k)] = lattice.node(cube.origin + k);
+  NodePlaces(const BandCube& cube, const BandLattice& lattice) {
+    for (int k = 0; k < kLevelSetBlock; ++k) along[static_cast<size_t>(k)] = lattice.node(cube.origin + k);
     for (size_t half = 0; half < 2; ++half)
       for (size_t i = 0; i < 16; ++i) {
         y[half][i] = along[4 * half + i / 4].y;
         z[half][i] = along[4 * half + i % 4].z;
       }
   }
-  std::array<glm::dvec3, kBlock> along;
+  std::array<glm::dvec3, kLevelSetBlock> along;
   double y[2][16], z[2][16];  ///< Of sixteen nodes in either half.
 };
 
@@ -214,7 +90,8 @@ double extent_at(const Field& field, const glm::dvec3& point) {
 
 /// The nodes of those sixteenths of the block (two along x by four by four) whose middle is no farther from the surface than the band
 /// reaches. The others are given the background, with the sign that the field has in the middle: it changes nowhere in them.
-void find_band_nodes(const Cube& cube, const Lattice& lattice, DistanceEvaluator& distance, LevelSetBlock& block, BandNodes& found) {
+void find_band_nodes(const BandCube& cube, const BandLattice& lattice, DistanceEvaluator& distance, LevelSetBlock& block,
+                     BandNodes& found) {
   const NodePlaces places(cube, lattice);
   LanePoints middles;
   LaneNumbers values;
@@ -243,7 +120,7 @@ void find_band_nodes(const Cube& cube, const Lattice& lattice, DistanceEvaluator
   }
 }
 
-ThinPlaces fill(LevelSetBlock& block, const Cube& cube, const Lattice& lattice, DistanceEvaluator& distance) {
+ThinPlaces fill(LevelSetBlock& block, const BandCube& cube, const BandLattice& lattice, DistanceEvaluator& distance) {
   BandNodes nodes;
   find_band_nodes(cube, lattice, distance, block, nodes);
   distance.lipschitz = cube.lipschitz;
@@ -256,7 +133,7 @@ ThinPlaces fill(LevelSetBlock& block, const Cube& cube, const Lattice& lattice, 
 
 /// Calls `visit(i, evaluator)` for a part of the cubes.
 template <class Visit>
-void for_each_cube(std::span<const Cube> cubes, const IndexRange<size_t>& part, const Visit& visit) {
+void for_each_cube(std::span<const BandCube> cubes, const IndexRange<size_t>& part, const Visit& visit) {
   std::optional<DistanceEvaluator> distance;
   for (size_t i = part.first; i < part.last; ++i) {
     turn_to(cubes[i].field, distance);
@@ -275,7 +152,7 @@ struct Asked {
 };
 
 /// Of the cubes asked so far, whether fill() will find an active node.
-void tell_band(std::span<const Cube> cubes, const Lattice& lattice, DistanceEvaluator& distance, Asked& asked,
+void tell_band(std::span<const BandCube> cubes, const BandLattice& lattice, DistanceEvaluator& distance, Asked& asked,
                std::vector<std::uint8_t>& holds) {
   BandNodes& nodes = asked.nodes;
   const auto any_in_band = [&](size_t first, size_t count) {
@@ -299,7 +176,7 @@ void tell_band(std::span<const Cube> cubes, const Lattice& lattice, DistanceEval
 }
 
 /// The cubes that hold a node of the band, in their order.
-std::vector<Cube> with_band(std::vector<Cube> cubes, const Lattice& lattice) {
+std::vector<BandCube> with_band(std::vector<BandCube> cubes, const BandLattice& lattice) {
   std::vector<std::uint8_t> holds(cubes.size());
   parallel_parts(cubes.size(), size_t{1}, [&](const IndexRange<size_t>& part) {
     Asked asked;
@@ -356,12 +233,12 @@ LevelSet level_set_from_field(const Field& field, const LevelSetSettings& settin
   check(field, settings);
   const auto started = std::chrono::steady_clock::now();
   const Box& bounds = field.traits().bounds;
-  const Lattice lattice = lattice_for(bounds, settings);
-  const std::vector<Cube> cubes = with_band(band_blocks(field, lattice, settings), lattice);
+  const BandLattice lattice = lattice_for(bounds, settings);
+  const std::vector<BandCube> cubes = with_band(band_blocks(field, lattice, settings), lattice);
   if (cubes.empty()) refuse_thin(settings.voxel_size, bounds);
   std::vector<glm::ivec3> origins;
   origins.reserve(cubes.size());
-  for (const Cube& cube : cubes) origins.push_back(cube.origin);
+  for (const BandCube& cube : cubes) origins.push_back(cube.origin);
   Progress progress(settings.progress, cubes.size());
   std::atomic<std::int64_t> looked_at{0}, walls{0}, gaps{0};
   const FillLeaves fill_leaves = [&](const IndexRange<size_t>& part, const WriteLeaf& write) {

@@ -30,6 +30,12 @@ struct ClosestPointData {
   void* scene = nullptr;
 };
 
+/// Eight edges of a border, as Winding::BorderEdge has each; those beyond the last are there no times.
+struct alignas(64) EdgeGroup {
+  double a[3][8], b[3][8];  ///< By axis.
+  double times[8];
+};
+
 /// The generalised winding number (Jacobson, Kavan & Sorkine-Hornung 2013) by a tree of dipoles (Barill et al. 2018), and the border that
 /// makes it change away from the triangles.
 class Winding {
@@ -39,8 +45,8 @@ class Winding {
   explicit Winding(const TriangleMesh& mesh);
   Winding(const TriangleMesh& mesh, std::span<const std::uint32_t> first_at, std::vector<std::int32_t> times = {});
 
-  /// How far, in radii of clusters, is far, and how close; and by how much the number errs then, at most.
-  static constexpr double kFarLook = 2.5, kFarError = 0.03, kCloseLook = 3.5, kCloseError = 0.01;
+  /// How far, in radii of clusters, is far; and by how much the number errs then, at most.
+  static constexpr double kFarLook = 2.5, kFarError = 0.03;
   /// Clusters count as dipoles beyond `far` of their radii.
   double number(const glm::dvec3& point, double far = kFarLook) const;
 
@@ -54,13 +60,19 @@ class Winding {
   const glm::dvec3& corner(std::uint32_t triangle, int i) const { return mesh_.positions[mesh_.triangles[triangle][i]]; }
   /// How often the triangle is there.
   int times(std::uint32_t triangle) const { return times_.empty() ? 1 : times_[triangle]; }
-  /// Gradient of the number away from the triangles: it depends on the border alone (Biot and Savart's law).
-  glm::dvec3 gradient(const glm::dvec3& point) const;
+  /// The number but for a whole one, and its gradient away from the triangles.
+  struct Potential {
+    double part = 0.0;  ///< From -1/2 to 1/2.
+    glm::dvec3 gradient{0.0};
+  };
+  /// They depend on the border alone, and are right to rounding. Eight points take little longer than one; sizes equal.
+  void potentials(std::span<const glm::dvec3> points, std::span<Potential> out) const;
+  Potential potential(const glm::dvec3& point) const;
+  glm::dvec3 gradient(const glm::dvec3& point) const { return potential(point).gradient; }
+
   /// No gradient within `radius` of `center` is longer than this.
   double gradient_bound(const glm::dvec3& center, double radius) const;
-  /// The same of several points, eight of which take little longer than one. Sizes equal.
-  void gradients(std::span<const glm::dvec3> points, std::span<glm::dvec3> out) const;
-  void gradient_bounds(std::span<const glm::dvec3> centers, double radius, std::span<double> out) const;
+  const std::vector<EdgeGroup>& border_groups() const { return border_groups_; }
 
  private:
   struct Node {
@@ -77,6 +89,7 @@ class Winding {
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> order_;  ///< Triangles, in the order of the leaves.
   std::vector<BorderEdge> border_;
+  std::vector<EdgeGroup> border_groups_;
 };
 
 /// Origins (multiples of 8) of the blocks of 8^3 nodes that come within `reach` (world) of a triangle, sorted; nodes lie at

@@ -2,18 +2,20 @@
 // Internal: on which side of an open mesh the nodes of a block lie.
 
 #include <array>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "subdiv/block_nodes.h"
+#include "subdiv/block_potential.h"
 #include "subdiv/mesh_distance.h"
 
 namespace limn {
 
 /// Near the holes of a mesh its winding number changes smoothly through one half. Bounds of its slope tell how far one node speaks for
-/// others; where they say too little, cubes of half the size are looked at by themselves. In the smallest ones each node is, and the
-/// surface {w = 1/2}, which closes the hole, counts as surface with its distance to first order, |w - 1/2| / |grad w|.
+/// others; where they say too little, each node's own number is asked for. The surface {w = 1/2}, which closes the hole, counts as surface
+/// with its distance to first order, |w - 1/2| / |grad w|.
 class OpenSides {
  public:
   /// `inside` becomes true of nodes that are found to be.
@@ -27,7 +29,7 @@ class OpenSides {
   /// potential changes, by no more than its slope times the straight distance.
   bool decides(double number, double reach, double slope, double error = Winding::kFarError) const;
   /// Nodes of one component of the block, for which no single one speaks.
-  void settle(std::span<const int> nodes) { settle_parts(nodes, glm::ivec3(0), 4); }
+  void settle(std::span<const int> nodes);
 
   /// Nodes, and their distances once the continuation over holes counts.
   const std::vector<std::pair<int, double>>& near_membrane() const { return near_membrane_; }
@@ -35,27 +37,16 @@ class OpenSides {
   bool has_membrane() const { return has_membrane_; }
 
  private:
-  /// The winding number at a node, and its gradient there.
-  struct Potential {
-    int node = -1;
-    double number = 0.0;
-    glm::dvec3 gradient{0.0};
-  };
-
-  glm::dvec3 center_of(const glm::ivec3& corner, int size) const;
-  double bound_radius(int size) const;
-  void settle_parts(std::span<const int> nodes, const glm::ivec3& corner, int half);
-  void settle_joined(const std::vector<int>& nodes, const glm::ivec3& corner, int size, double slope);
-  void settle_part(std::span<const int> nodes, const glm::ivec3& corner, int size, double slope);
-  double number_near(const Potential& known, int node, const glm::dvec3& gradient) const;
-  void near_hole(std::span<const int> nodes, const Potential* known);
-  void near_hole(int node, double number, const glm::dvec3& gradient);
+  double number_at(int node) const;
+  std::optional<double> number_from(int node, double number, int next) const;
+  void near_hole(int node, double number);
 
   BlockNodes nodes_;
   const Winding& winding_;
   double half_width_;
   std::array<bool, kBlockNodes>& inside_;
   double slope_bound_ = -1.0;  ///< Below 0: not asked for yet.
+  std::optional<BlockPotential> potential_{};
   std::vector<std::pair<int, double>> near_membrane_{};
   bool has_membrane_ = false;
 };

@@ -45,6 +45,47 @@ class AngleSum {
   int rounds_ = 0;
 };
 
+/// An edge of a border, between vertices.
+struct Directed {
+  std::uint32_t from, to;
+  int times;
+};
+
+/// Each where the one before it ends, as long as there is one.
+std::vector<Directed> in_chains(std::vector<Directed> edges) {
+  std::stable_sort(edges.begin(), edges.end(), [](const Directed& a, const Directed& b) { return a.from < b.from; });
+  std::vector<Directed> chained;
+  chained.reserve(edges.size());
+  std::vector<char> used(edges.size(), 0);
+  std::vector<size_t> unused(edges.size());  // of edges from one vertex, at their first: which may be the next
+  std::iota(unused.begin(), unused.end(), size_t{0});
+  const auto next_from = [&](std::uint32_t vertex) {
+    const auto found =
+        std::lower_bound(edges.begin(), edges.end(), vertex, [](const Directed& edge, std::uint32_t v) { return edge.from < v; });
+    if (found == edges.end()) return edges.size();
+    size_t& next = unused[static_cast<size_t>(found - edges.begin())];
+    while (next < edges.size() && edges[next].from == vertex && used[next]) ++next;
+    return next < edges.size() && edges[next].from == vertex ? next : edges.size();
+  };
+  for (size_t first = 0; first < edges.size(); ++first)
+    for (size_t i = used[first] ? edges.size() : first; i < edges.size(); i = next_from(edges[i].to)) {
+      used[i] = 1;
+      chained.push_back(edges[i]);
+    }
+  return chained;
+}
+
+std::vector<EdgeGroup> in_groups(const std::vector<Winding::BorderEdge>& border) {
+  std::vector<EdgeGroup> groups((border.size() + 7) / 8);
+  for (size_t i = 0; i < 8 * groups.size(); ++i) {
+    const Winding::BorderEdge& edge = border[std::min(i, border.size() - 1)];
+    EdgeGroup& group = groups[i / 8];
+    for (int axis = 0; axis < 3; ++axis) group.a[axis][i % 8] = edge.a[axis], group.b[axis][i % 8] = edge.b[axis];
+    group.times[i % 8] = i < border.size() ? edge.multiplicity : 0.0;
+  }
+  return groups;
+}
+
 }  // namespace
 
 Winding::Winding(const TriangleMesh& mesh) : Winding(mesh, first_at_position(mesh.positions)) {}
@@ -99,6 +140,7 @@ void Winding::find_border(std::span<const std::uint32_t> first_at) {
   visit([&](std::uint32_t low, const Use&) { ++ends[low + 1]; });
   std::partial_sum(ends.begin(), ends.end(), ends.begin());
   std::vector<Use> uses(ends.back());
+  std::vector<Directed> edges;
   // Each start moves on to where the next vertex starts.
   visit([&](std::uint32_t low, const Use& use) { uses[ends[low]++] = use; });
   for (std::uint32_t low = 0, start = 0; low + 1 < ends.size(); start = ends[low++]) {
@@ -108,10 +150,14 @@ void Winding::find_border(std::span<const std::uint32_t> first_at) {
       int net = 0;
       size_t end = i;
       for (; end < own.size() && own[end].high == own[i].high; ++end) net += own[end].times;
-      if (net != 0) border_.push_back({mesh_.positions[low], mesh_.positions[own[i].high], net});
+      if (net > 0) edges.push_back({low, own[i].high, net});
+      if (net < 0) edges.push_back({own[i].high, low, -net});
       i = end;
     }
   }
+  for (const Directed& edge : in_chains(std::move(edges)))
+    border_.push_back({mesh_.positions[edge.from], mesh_.positions[edge.to], edge.times});
+  border_groups_ = in_groups(border_);
 }
 
 }  // namespace limn

@@ -25,7 +25,8 @@ constexpr double kModelMs = 1.0, kFaceMs = 3e-4, kFieldFaceMs = 6e-4, kFieldFace
 constexpr double kCageFaceMs = 0.025, kCagePartMs = 8.0;  // of a field's cage: samplings, and creases between parts
 constexpr double kResampleMs = 1e-3;                      // a voxel of either grid
 constexpr double kVoxelMs = 3.8e-5, kMeshVoxelMs = 1.1e-4, kMeshVoxelFaceMs = 1.1e-3, kGridBytes = 1.7e6;
-constexpr double kHoleVoxelMs = 3.5e-4;  // more where the winding number tells what is inside
+// More where the winding number tells what is inside: all over, and along the rims of holes by voxels of the longest side.
+constexpr double kHoleVoxelMs = 6e-5, kHoleSideMs = 0.35;
 // Peaks of ellipsoid and gyroid, 256 to 1024 voxels, bands of 2.45 to 8: blocks of 8^3 go by the surface, the grid that stays by the band.
 constexpr double kVoxelBytes = 9.6, kSurfaceCellBytes = 107.0, kVoxelPartBytes = 0.07;
 constexpr double kPictureMs = 0.5, kMeshRayMs = 2.5e-6, kDrawnFaceMs = 4e-5, kGridRayMs = 6e-6, kFieldRayMs = 5e-6;
@@ -152,9 +153,13 @@ SceneSize::Object size_of(const SceneObject& object, const SurfaceSettings& sett
 
 double faces_of(const SceneSize::Object& object, int level) { return object.refines ? object.faces * std::pow(4.0, level) : object.faces; }
 
+double voxel_of(const SceneSize::Object& object, const SurfaceSettings& settings) {
+  return settings.voxel_size > 0.0 ? settings.voxel_size : object.longest_side / settings.voxels;
+}
+
 double voxels_of(const SceneSize::Object& object, const SurfaceSettings& settings, double half_width) {
   if (object.longest_side <= 0.0) return 0.0;
-  const double voxel = settings.voxel_size > 0.0 ? settings.voxel_size : object.longest_side / settings.voxels;
+  const double voxel = voxel_of(object, settings);
   // Of a grid this coarse most of the box is band.
   const double side = object.longest_side / voxel + 2.0 * half_width;
   return std::min(2.0 * half_width * object.area / (voxel * voxel), side * side * side);
@@ -225,6 +230,7 @@ ExpectedCost expected_cost(const SceneSize& size, const SurfaceSettings& setting
       remeshed.own_voxels = 0.0;
       add_mesh(object, settings, share, false, cost);
       cost.build_ms += kMeshVoxelFaceMs * faces_of(object, settings.level);
+      if (object.has_holes && object.longest_side > 0.0) cost.build_ms += kHoleSideMs * object.longest_side / voxel_of(object, settings);
       add_grid(remeshed, settings, share, kMeshVoxelMs + (object.has_holes ? kHoleVoxelMs : 0.0), cost);
     }
   }

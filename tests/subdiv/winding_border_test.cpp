@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sdf/segment.h"
+#include "subdiv/block_potential.h"
 #include "subdiv/mesh_distance.h"
 #include "tests/random_seed.h"
 #include "tests/sdf/random_field.h"
@@ -15,7 +16,10 @@
 namespace limn::test {
 namespace {
 
-/// Triangles of all sizes and shapes, some of them joined at an edge.
+/// Of a number, from the nearest whole one.
+double off_whole(double number) { return std::abs(number - std::round(number)); }
+
+/// Triangles of all sizes and shapes, some of them joined at an edge, some there twice.
 TriangleMesh random_soup(Random& random) {
   TriangleMesh mesh;
   for (int k = random.index(12); k >= 0; --k) {
@@ -25,6 +29,7 @@ TriangleMesh random_soup(Random& random) {
     for (int i = 0; i < 4; ++i) mesh.positions.push_back(middle + random.point(size));
     mesh.triangles.emplace_back(first, first + 1, first + 2);
     if (random.index(2) == 0) mesh.triangles.emplace_back(first + 2, first + 1, first + 3);
+    if (random.index(6) == 0) mesh.triangles.emplace_back(first, first + 1, first + 2);
   }
   return mesh;
 }
@@ -35,7 +40,7 @@ double distance_to_border(const Winding& winding, const glm::dvec3& p) {
   return least;
 }
 
-TEST(WindingBorder, GradientsAreThoseOfTheNumber) {
+TEST(WindingBorder, PotentialsAreTheNumberButForAWholeOneAndItsGradient) {
   const std::uint64_t seed = random_seed();
   Random random(seed);
   int compared = 0;
@@ -45,20 +50,22 @@ TEST(WindingBorder, GradientsAreThoseOfTheNumber) {
     const Winding winding(mesh);
     std::vector<glm::dvec3> points(static_cast<size_t>(1 + random.index(20)));
     for (glm::dvec3& p : points) p = random.point(1.5);
-    std::vector<glm::dvec3> found(points.size());
-    winding.gradients(points, found);
+    std::vector<Winding::Potential> found(points.size());
+    winding.potentials(points, found);
     for (size_t i = 0; i < points.size(); ++i) {
-      EXPECT_EQ(found[i], winding.gradient(points[i]));
+      EXPECT_EQ(found[i].gradient, winding.gradient(points[i]));
+      EXPECT_EQ(found[i].part, winding.potential(points[i]).part);
       constexpr double h = 1e-5;
       const double away = distance_to_border(winding, points[i]);
       if (away < 0.02) continue;
+      EXPECT_LT(off_whole(found[i].part - exact_winding(mesh, points[i])), 1e-9) << "point " << i;
       for (int axis = 0; axis < 3; ++axis) {
         glm::dvec3 step(0.0);
         step[axis] = h;
         const double change = exact_winding(mesh, points[i] + step) - exact_winding(mesh, points[i] - step);
         // Between two points on either side of a triangle it jumps.
         if (std::abs(change) > 0.2) continue;
-        EXPECT_NEAR(found[i][axis], change / (2.0 * h), 1e-9 / h + h * h / (away * away * away * away)) << "point " << i;
+        EXPECT_NEAR(found[i].gradient[axis], change / (2.0 * h), 1e-9 / h + h * h / (away * away * away * away)) << "point " << i;
         ++compared;
       }
     }
@@ -78,10 +85,9 @@ TEST(WindingBorder, BoundsHoldAllOverABallAndAreFiniteWhereItDoesNotTouchTheBord
     std::vector<glm::dvec3> centers(static_cast<size_t>(1 + random.index(12)));
     for (glm::dvec3& center : centers) center = random.point(1.5);
     const double radius = std::exp2(random.uniform(-8.0, -1.0));
-    std::vector<double> bounds(centers.size());
-    winding.gradient_bounds(centers, radius, bounds);
+    std::vector<double> bounds;
+    for (const glm::dvec3& center : centers) bounds.push_back(winding.gradient_bound(center, radius));
     for (size_t i = 0; i < centers.size(); ++i) {
-      EXPECT_EQ(bounds[i], winding.gradient_bound(centers[i], radius));
       const glm::dvec3& center = centers[i];
       const double away = distance_to_border(winding, center);
       if (std::abs(away - radius) < 1e-9) continue;
@@ -114,7 +120,7 @@ TEST(WindingBorder, BoundsHoldAllOverABallAndAreFiniteWhereItDoesNotTouchTheBord
 TEST(WindingBorder, TheTreeIsOffByNoMoreThanSaid) {
   const std::uint64_t seed = random_seed();
   Random random(seed);
-  double far = 0.0, close = 0.0;
+  double far = 0.0;
   for (int k = 0; k < 60; ++k) {
     TriangleMesh mesh = k % 3 == 0 ? random_soup(random) : triangulate(k % 3 == 1 ? sphere(3) : torus(24, 16, 2.0, 0.7), NormalKind::flat);
     if (k % 3 != 0)
@@ -124,12 +130,10 @@ TEST(WindingBorder, TheTreeIsOffByNoMoreThanSaid) {
       const glm::dvec3 p = random.point(2.5);
       const double exact = exact_winding(mesh, p);
       far = std::max(far, std::abs(winding.number(p) - exact));
-      close = std::max(close, std::abs(winding.number(p, Winding::kCloseLook) - exact));
     }
   }
-  fmt::print("seed {}: off by at most {:.4f}, close by {:.4f}\n", seed, far, close);
+  fmt::print("seed {}: off by at most {:.4f}\n", seed, far);
   EXPECT_LT(far, Winding::kFarError);
-  EXPECT_LT(close, Winding::kCloseError);
 }
 
 TEST(Winding, IsTheSumOfAllTrianglesAtAnyScale) {
@@ -161,16 +165,18 @@ TEST(WindingBorder, IsTheSameOnEverySimdTarget) {
   Random random(seed);
   for (int k = 0; k < 20; ++k) {
     const Winding winding(random_soup(random));
-    std::vector<glm::dvec3> points(11), widest(11), found(11);
-    for (glm::dvec3& p : points) p = random.point(1.5);
-    std::vector<double> bounds(11), others(11);
-    winding.gradients(points, widest);
-    winding.gradient_bounds(points, 0.02, bounds);
+    const glm::ivec3 origin(8 * random.index(20) - 80, 8 * random.index(20) - 80, 8 * random.index(20) - 80);
+    const BlockDistanceArray distances{};
+    const BlockNodes nodes{origin, 0.02, distances};
+    const BlockPotential widest(nodes, winding);
+    const double bound = winding.gradient_bound(nodes.world(0), 0.02);
     for_each_simd_target([&](const char* target) {
-      winding.gradients(points, found);
-      winding.gradient_bounds(points, 0.02, others);
-      EXPECT_EQ(found, widest) << target;
-      EXPECT_EQ(others, bounds) << target;
+      const BlockPotential found(nodes, winding);
+      int same = 0;
+      for (int node = 0; node < kBlockNodes; ++node)
+        same += found.at(node).part == widest.at(node).part && found.at(node).gradient == widest.at(node).gradient;
+      EXPECT_EQ(same, kBlockNodes) << target;
+      EXPECT_EQ(winding.gradient_bound(nodes.world(0), 0.02), bound) << target;
     });
   }
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Internal: constants written past the caches, where memory has such stores.
+// Internal: constants written sixteen bytes at a time, past the caches where that is wanted and memory has such stores.
 
 #include <algorithm>
 #include <cstddef>
@@ -18,7 +18,7 @@ namespace limn {
 /// std::fill_n of plain values whose bytes repeat every 16: each of its 32-bit words is the same, or its bytes are, or it is 16 bytes long
 /// and lies at a multiple of them.
 template <class T>
-void stream_fill(T* to, size_t count, const T& value) {
+void fill_words(T* to, size_t count, const T& value, bool past_caches) {
 #if LIMN_SIMD && defined(__SSE2__)
   constexpr size_t period = sizeof(T) == 16 ? 16 : std::min<size_t>(sizeof(T), 4);
   if (reinterpret_cast<std::uintptr_t>(to) % period != 0) {
@@ -33,11 +33,21 @@ void stream_fill(T* to, size_t count, const T& value) {
   // Elements lie at multiples of their words, so the pattern starts anew at every 16-byte boundary as it does at `to`.
   std::memcpy(at, pattern, head);
   const __m128i words = _mm_loadu_si128(reinterpret_cast<const __m128i*>(pattern));
-  for (at += head; at + 16 <= end; at += 16) _mm_stream_si128(reinterpret_cast<__m128i*>(at), words);
+  at += head;
+  if (past_caches)
+    for (; at + 16 <= end; at += 16) _mm_stream_si128(reinterpret_cast<__m128i*>(at), words);
+  else
+    for (; at + 16 <= end; at += 16) _mm_store_si128(reinterpret_cast<__m128i*>(at), words);
   std::memcpy(at, pattern, static_cast<size_t>(end - at));
 #else
+  static_cast<void>(past_caches);
   std::fill_n(to, count, value);
 #endif
+}
+
+template <class T>
+void stream_fill(T* to, size_t count, const T& value) {
+  fill_words(to, count, value, true);
 }
 
 /// Pictures of more pixels than this do not stay in a cache until somebody reads them.
@@ -48,13 +58,8 @@ template <class T>
 void fill_rows(Image<T>& image, const PixelTile& tile, const T& value) {
   if (image.pixels.empty()) return;
   const bool past_caches = image.size() >= kLargePicture;
-  for (int y = tile.y; y < tile.y + tile.height; ++y) {
-    T* const row = &image.pixels[image.index(tile.x, y)];
-    if (past_caches)
-      stream_fill(row, static_cast<size_t>(tile.width), value);
-    else
-      std::fill_n(row, tile.width, value);
-  }
+  for (int y = tile.y; y < tile.y + tile.height; ++y)
+    fill_words(&image.pixels[image.index(tile.x, y)], static_cast<size_t>(tile.width), value, past_caches);
 }
 
 }  // namespace limn

@@ -7,29 +7,26 @@
 
 namespace limn {
 
-std::vector<MetricValue> summarise_errors(std::vector<PixelError> errors, const std::string& name, const std::string& unit) {
+std::vector<MetricValue> summarise_errors(PixelErrors errors, int width_px, const std::string& name, const std::string& unit) {
   constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-  double mean = nothing, rms = nothing, p99 = nothing;
-  PixelError worst{0, 0, nothing};
-  double worst_x = nothing, worst_y = nothing;
-  if (!errors.empty()) {
+  double mean = nothing, rms = nothing, p99 = nothing, worst = nothing, worst_x = nothing, worst_y = nothing;
+  if (const std::vector<double>& values = errors.values; !values.empty()) {
     double sum = 0.0, squares = 0.0;
-    for (const PixelError& error : errors) {
-      sum += error.value;
-      squares += error.value * error.value;
+    for (const double value : values) {
+      sum += value;
+      squares += value * value;
     }
-    mean = sum / static_cast<double>(errors.size());
-    rms = std::sqrt(squares / static_cast<double>(errors.size()));
-    worst = *std::max_element(errors.begin(), errors.end(), [](const PixelError& a, const PixelError& b) { return a.value < b.value; });
-    worst_x = worst.x;
-    worst_y = worst.y;
-    std::vector<double> values;
-    values.reserve(errors.size());
-    for (const PixelError& error : errors) values.push_back(error.value);
-    p99 = nearest_rank_quantile(std::move(values), 0.99);
+    mean = sum / static_cast<double>(values.size());
+    rms = std::sqrt(squares / static_cast<double>(values.size()));
+    const auto largest = std::max_element(values.begin(), values.end());
+    worst = *largest;
+    const size_t pixel = errors.pixels[static_cast<size_t>(largest - values.begin())], width = static_cast<size_t>(width_px);
+    worst_x = static_cast<double>(pixel % width);
+    worst_y = static_cast<double>(pixel / width);
+    p99 = nearest_rank_quantile(std::move(errors.values), 0.99);
   }
-  return {{name + "_mean", mean, unit},       {name + "_rms", rms, unit},       {name + "_p99", p99, unit},
-          {name + "_max", worst.value, unit}, {name + "_max_x", worst_x, "px"}, {name + "_max_y", worst_y, "px"}};
+  return {{name + "_mean", mean, unit}, {name + "_rms", rms, unit},       {name + "_p99", p99, unit},
+          {name + "_max", worst, unit}, {name + "_max_x", worst_x, "px"}, {name + "_max_y", worst_y, "px"}};
 }
 
 std::vector<std::string> summary_names(const std::string& name, const std::string& unit) {

@@ -51,7 +51,7 @@ FieldEvaluator& FieldEvaluator::operator=(FieldEvaluator&&) noexcept = default;
 void FieldEvaluator::values(std::span<const glm::dvec3> points, std::span<double> values) {
   LIMN_CHECK(points.size() == values.size());
   constexpr size_t kFewest = 16;
-  if (const FieldTape* const tape = scratch_->tape_for(field_, points.size(), kFewest))
+  if (const FieldTape* const tape = asks_together() ? nullptr : scratch_->tape_for(field_, points.size(), kFewest))
     return tape_values_at(*tape, points, scratch_->lanes, values);
   run_batches(field_.program(), scratch_->get<double>(), points,
               [&](size_t first, size_t count, const double* results) { std::copy_n(results, count, values.data() + first); });
@@ -66,7 +66,7 @@ void FieldEvaluator::values(std::span<const glm::vec3> points, std::span<float> 
 void FieldEvaluator::gradients(std::span<const glm::dvec3> points, std::span<double> values, std::span<glm::dvec3> gradients) {
   LIMN_CHECK(points.size() == values.size() && points.size() == gradients.size());
   constexpr size_t kFewest = 8;
-  if (const FieldTape* const tape = scratch_->tape_for(field_, points.size(), kFewest))
+  if (const FieldTape* const tape = asks_together() ? nullptr : scratch_->tape_for(field_, points.size(), kFewest))
     return tape_gradients_at(*tape, points, scratch_->lanes, values, gradients);
   run_batches(field_.program(), scratch_->get<Dual>(), points, [&](size_t first, size_t count, const Dual* results) {
     for (size_t i = 0; i < count; ++i) {

@@ -84,6 +84,10 @@ class FieldEvaluator {
 
   /// Bounds of f over a box: never too narrow; the tighter of interval arithmetic and the Lipschitz bound about the centre.
   Interval bounds(const Box& box);
+  /// The same over each of several boxes; sizes equal. A field from a function of many points (FieldFunctions::values) is asked once.
+  void bounds(std::span<const Box> boxes, std::span<Interval> bounds);
+  /// True for such a field.
+  bool asks_together() const;
   /// Bounds of f and of its slope on origin + t * direction, t in `t`.
   RayBounds bounds_along(const glm::dvec3& origin, const glm::dvec3& direction, Interval t);
   /// Bounds of f and grad f over a box; the whole line for a box that is not finite.

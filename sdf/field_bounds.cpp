@@ -5,6 +5,21 @@
 #include "sdf/number_interval.h"
 
 namespace limn {
+namespace {
+
+/// As FieldEvaluator::bounds of a field that is this leaf; `middle`: its value at the center.
+Interval leaf_bounds(const FieldLeaf& leaf, const Box& box, double middle) {
+  std::array<Interval, 3> at;
+  for (int axis = 0; axis < 3; ++axis) at[static_cast<size_t>(axis)] = row_bounds(RowMap<double>(leaf.object_from_world, axis), box);
+  Interval found;
+  std::get<ShapeFunction<Interval>>(leaf.functions->evaluate)(leaf.shape.get(), &at[0], &at[1], &at[2], &found, 1);
+  const glm::dvec3 center = box.center();
+  const double radius = glm::length(glm::max(box.upper - center, center - box.lower)) * (1.0 + 1e-15);
+  return tighter(found * leaf.value_scale, lipschitz_bounds(middle, leaf.lipschitz, radius, leaf_extent(leaf, center)));
+}
+
+}  // namespace
+
 Interval FieldEvaluator::bounds(const Box& box) {
   if (!box.finite()) return {};
   const FieldProgram& program = field_.program();
@@ -26,6 +41,25 @@ Interval FieldEvaluator::bounds(const Box& box) {
   double extent = 0.0;
   for (const FieldLeaf& leaf : program.leaves) extent = std::max(extent, leaf_extent(leaf, center));
   return tighter(result, lipschitz_bounds(value(center), program.traits.lipschitz, radius, extent));
+}
+
+bool FieldEvaluator::asks_together() const {
+  const FieldProgram& program = field_.program();
+  return program.instructions.size() == 1 && program.leaves[program.instructions[0].leaf].functions->together;
+}
+
+void FieldEvaluator::bounds(std::span<const Box> boxes, std::span<Interval> bounds) {
+  LIMN_CHECK(boxes.size() == bounds.size());
+  if (!asks_together()) {
+    for (size_t i = 0; i < boxes.size(); ++i) bounds[i] = this->bounds(boxes[i]);
+    return;
+  }
+  const FieldLeaf& leaf = field_.program().leaves[field_.program().instructions[0].leaf];
+  std::vector<glm::dvec3> centers;
+  for (const Box& box : boxes) centers.push_back(box.finite() ? box.center() : glm::dvec3(0.0));
+  std::vector<double> middles(centers.size());
+  values(centers, middles);
+  for (size_t i = 0; i < boxes.size(); ++i) bounds[i] = boxes[i].finite() ? leaf_bounds(leaf, boxes[i], middles[i]) : Interval{};
 }
 
 RayBounds FieldEvaluator::bounds_along(const glm::dvec3& origin, const glm::dvec3& direction, Interval t) {

@@ -45,6 +45,7 @@ struct ShapeFunctions {
   /// What `evaluate` gives of a Jet, to the bit, at one place in object space: derivatives by world coordinates, of which the place is a
   /// linear function. Null where that is no quicker.
   FieldJet (*jet)(const void* shape, const glm::dvec3& place, const glm::dmat3& object_from_world) = nullptr;
+  bool together = false;  ///< Many points at once take little longer than one.
 };
 
 inline constexpr int kNoMaterial = -1;

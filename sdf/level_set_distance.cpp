@@ -43,7 +43,8 @@ void turn_to(const Field& field, std::optional<DistanceEvaluator>& distance) {
 }
 
 void field_values(DistanceEvaluator& distance, const LanePoints& points, LaneNumbers& values) {
-  if (has_tape(distance)) return tape_values_at(*distance.tape, points, distance.scratch, values);
+  const bool by_tape = has_tape(distance) && !distance.evaluator.asks_together();
+  if (by_tape) return tape_values_at(*distance.tape, points, distance.scratch, values);
   std::array<glm::dvec3, kMostLanePoints> places;
   for (size_t i = 0; i < points.count; ++i) places[i] = points.point(i);
   distance.evaluator.values(std::span(places).first(points.count), std::span(values.at).first(points.count));

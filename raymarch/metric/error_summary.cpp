@@ -20,9 +20,9 @@ std::vector<MetricValue> summarise_errors(PixelErrors errors, int width_px, cons
     rms = std::sqrt(squares / static_cast<double>(values.size()));
     const auto largest = std::max_element(values.begin(), values.end());
     worst = *largest;
-    const size_t pixel = errors.pixels[static_cast<size_t>(largest - values.begin())], width = static_cast<size_t>(width_px);
-    worst_x = static_cast<double>(pixel % width);
-    worst_y = static_cast<double>(pixel / width);
+    const auto pixel = static_cast<int>(errors.pixels[static_cast<size_t>(largest - values.begin())]), row = pixel / width_px;
+    worst_x = pixel - row * width_px;
+    worst_y = row;
     p99 = nearest_rank_quantile(std::move(errors.values), 0.99);
   }
   return {{name + "_mean", mean, unit}, {name + "_rms", rms, unit},       {name + "_p99", p99, unit},

@@ -46,15 +46,59 @@ void check_callable(const py::object& function, const char* field) {
         {"", field, py::str(py::type::of(function).attr("__name__")).cast<std::string>(), "cannot be called", "a function of x, y and z"});
 }
 
-Field field_of(const py::object& function, const py::object& bounds, double lipschitz, const py::object& gradient) {
+/// Calls with arrays of x, y and z; what comes back has `per_point` numbers a point, point by point.
+void call_with_arrays(const py::object& function, std::span<const glm::dvec3> points, size_t per_point, const char* field, double* out) {
+  std::array<py::array_t<double>, 3> at;
+  for (int axis = 0; axis < 3; ++axis) {
+    py::array_t<double>& numbers = at[static_cast<size_t>(axis)];
+    numbers = py::array_t<double>(static_cast<py::ssize_t>(points.size()));
+    double* const to = numbers.mutable_data();
+    for (size_t i = 0; i < points.size(); ++i) to[i] = points[i][axis];
+  }
+  const py::object returned = function(at[0], at[1], at[2]);
+  const auto found = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(returned);
+  const size_t expected = per_point * points.size();
+  const auto refused = [&](const std::string& value, const std::string& problem) {
+    const std::string shape = per_point == 1 ? fmt::format("({},)", points.size()) : fmt::format("({}, {})", points.size(), per_point);
+    return InputError({"", field, value, problem, "an array " + shape + " of finite numbers for arrays of as many points"});
+  };
+  if (!found) {
+    PyErr_Clear();
+    throw refused(py::str(py::type::of(returned).attr("__name__")).cast<std::string>(), "returned no array of numbers");
+  }
+  if (static_cast<size_t>(found.size()) != expected)
+    throw refused(py::str(py::tuple(found.attr("shape"))).cast<std::string>(), "returned an array of another shape");
+  std::copy_n(found.data(), expected, out);
+  const double* const wrong = std::find_if(out, out + expected, [](double number) { return !std::isfinite(number); });
+  if (wrong != out + expected) throw refused(fmt::format("{}", *wrong), "returned no finite number");
+}
+
+/// Of functions that take arrays.
+void set_functions_of_many(const py::object& function, const py::object& gradient, FieldFunctions& functions) {
+  functions.values = [held = shared_object(function)](std::span<const glm::dvec3> points, std::span<double> values) {
+    const py::gil_scoped_acquire locked;
+    call_with_arrays(*held, points, 1, "function", values.data());
+  };
+  if (gradient.is_none()) return;
+  functions.gradients = [held = shared_object(gradient)](std::span<const glm::dvec3> points, std::span<glm::dvec3> gradients) {
+    const py::gil_scoped_acquire locked;
+    call_with_arrays(*held, points, 3, "gradient", &gradients.data()->x);
+  };
+}
+
+Field field_of(const py::object& function, const py::object& bounds, double lipschitz, const py::object& gradient, bool vectorized) {
   check_callable(function, "function");
+  if (!gradient.is_none()) check_callable(gradient, "gradient");
   FieldFunctions functions{.lipschitz = lipschitz, .extent = box_of(bounds, "bounds")};
+  if (vectorized) {
+    set_functions_of_many(function, gradient, functions);
+    return field_from_functions(functions);
+  }
   functions.value = [held = shared_object(function)](const glm::dvec3& p) {
     const py::gil_scoped_acquire locked;
     return number_from((*held)(p.x, p.y, p.z), "function");
   };
   if (!gradient.is_none()) {
-    check_callable(gradient, "gradient");
     functions.gradient = [held = shared_object(gradient)](const glm::dvec3& p) {
       const py::gil_scoped_acquire locked;
       return vector_of((*held)(p.x, p.y, p.z), "gradient");
@@ -178,7 +222,8 @@ void bind_fields(py::module_& module) {
           "exact_distance", [](const Field& field) { return field.traits().exact_distance; },
           "True where the field is the distance to its surface.");
   module.def("shape", shape_of, py::arg("name"), py::arg("parameters"));
-  module.def("field_of", field_of, py::arg("function"), py::arg("bounds"), py::arg("lipschitz"), py::arg("gradient") = py::none());
+  module.def("field_of", field_of, py::arg("function"), py::arg("bounds"), py::arg("lipschitz"), py::arg("gradient") = py::none(),
+             py::arg("vectorized") = false);
   module.def("grid_of", grid_of, py::arg("values"), py::arg("origin"), py::arg("spacing"));
   module.def("formula_of", formula_of, py::arg("text"), py::arg("name"));
 }

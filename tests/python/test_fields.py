@@ -145,6 +145,74 @@ class Callables(TestCase):
             limn.field(3, **self.BALL)
 
 
+class Arrays(TestCase):
+    """Functions that take arrays."""
+
+    BALL = dict(bounds=[(-1.1,) * 3, (1.1,) * 3], lipschitz=1.0, vectorized=True)
+
+    def setUp(self):
+        self.calls, self.asked = 0, 0
+
+    def ball(self, x, y, z):
+        self.calls += 1
+        self.asked += len(x)
+        return numpy.sqrt(x * x + y * y + z * z) - 1
+
+    def test_pictures_and_level_sets_are_those_of_single_points(self):
+        field, single = limn.field(self.ball, **self.BALL), limn.field(Callables.ball, **Callables.BALL)
+        at = points(300)
+        numpy.testing.assert_array_equal(field.values(at), single.values(at))
+        numpy.testing.assert_array_equal(field.gradients(at), single.gradients(at))
+        camera = limn.Camera(eye=(0, 0, 4), target=(0, 0, 0), size=(24, 18))
+        drawn, expected = (limn.render(one, camera=camera, samples=1) for one in (field, single))
+        numpy.testing.assert_array_equal(drawn.depth, expected.depth)
+        numpy.testing.assert_array_equal(drawn.normal, expected.normal)
+        grids = [limn.level_set(one, voxels=16).active() for one in (field, single)]
+        numpy.testing.assert_array_equal(grids[0][0], grids[1][0])
+        numpy.testing.assert_array_equal(grids[0][1], grids[1][1])
+
+    def test_many_points_are_asked_for_at_once(self):
+        field = limn.field(self.ball, **self.BALL)
+        limn.render(field, size=(48, 36))
+        self.assertGreater(self.asked, 10 * self.calls)
+        self.setUp()
+        limn.level_set(field, voxels=32)
+        self.assertGreater(self.asked, 50 * self.calls)
+
+    def test_columns_and_gradients(self):
+        field = limn.field(lambda x, y, z: self.ball(x, y, z)[:, None], gradient=lambda x, y, z: numpy.stack([x, 2 * y, 3 * z], 1), **self.BALL)
+        at = points(20)
+        numpy.testing.assert_allclose(field.values(at), numpy.linalg.norm(at, axis=1) - 1, atol=1e-14)
+        numpy.testing.assert_array_equal(field.gradients(at), at * [1, 2, 3])
+        numpy.testing.assert_array_equal(limn.field(lambda x, y, z: (x + 2).astype(numpy.float32), **self.BALL).values([[0, 0, 0]]), [2.0])
+
+    def test_what_it_returns_is_checked(self):
+        wrong = {
+            "None": lambda x, y, z: None,
+            "text": lambda x, y, z: ["a"] * len(x),
+            "one number": lambda x, y, z: numpy.float64(2),
+            "too many": lambda x, y, z: numpy.zeros(len(x) + 1),
+            "NaN": lambda x, y, z: numpy.where(x > -9, numpy.nan, 0),
+            "infinity": lambda x, y, z: numpy.full(len(x), numpy.inf),
+        }
+        for name, function in wrong.items():
+            with self.assertRaisesRegex(limn.InputError, "function", msg=name):
+                limn.field(function, **self.BALL).values(points(3))
+            with self.assertRaisesRegex(limn.InputError, "function", msg=name):
+                limn.render(limn.field(function, **self.BALL), size=(16, 12))
+        with self.assertRaisesRegex(limn.InputError, r"gradient.*\(3, 3\)"):
+            limn.field(self.ball, gradient=lambda x, y, z: x, **self.BALL).gradients(points(3))
+        with self.assertRaisesRegex(limn.InputError, "vectorized"):
+            limn.field(self.ball, **{**self.BALL, "vectorized": 1})
+
+    def test_what_it_raises_comes_out(self):
+        def raises(x, y, z):
+            raise LookupError("no such value")
+
+        with self.assertRaisesRegex(LookupError, "no such value"):
+            limn.render(limn.field(raises, **self.BALL), size=(16, 12))
+
+
 class Grids(TestCase):
     @staticmethod
     def samples(count=24, reach=1.3):

@@ -96,6 +96,63 @@ TEST(FieldFromFormula, WhatHoldsNoSurfaceIsRefused) {
                InputError);
 }
 
+/// The same functions asked for many points at once.
+FieldFunctions of_many(const FieldFunctions& one, int& most) {
+  FieldFunctions many{.bounds = one.bounds, .lipschitz = one.lipschitz, .extent = one.extent};
+  many.values = [value = one.value, &most](std::span<const glm::dvec3> points, std::span<double> values) {
+    most = std::max(most, static_cast<int>(points.size()));
+    for (size_t i = 0; i < points.size(); ++i) values[i] = value(points[i]);
+  };
+  if (one.gradient)
+    many.gradients = [gradient = one.gradient](std::span<const glm::dvec3> points, std::span<glm::dvec3> gradients) {
+      for (size_t i = 0; i < points.size(); ++i) gradients[i] = gradient(points[i]);
+    };
+  return many;
+}
+
+TEST(FieldFromFunctions, OfManyPointsIsThatOfEachToTheLastBit) {
+  const unsigned seed = random_seed();
+  const Field exact = make_shape("torus", {{"major", {1.0}}, {"minor", {0.4}}});
+  for (const bool gradient : {false, true}) {
+    FieldFunctions functions = torus_functions();
+    if (gradient) functions.gradient = [&exact](const glm::dvec3& p) { return FieldEvaluator(exact).jet(p).gradient; };
+    int most = 0;
+    const auto placed = [](const Field& field) { return scale(rotate(translate(field, {0.3, 0.1, -0.2}), {1.0, 2.0, 3.0}, 0.5), 1.5); };
+    const Field many = placed(field_from_functions(of_many(functions, most))), one = placed(field_from_functions(functions));
+    std::vector<glm::dvec3> points;
+    at_random_points(seed, 300, [&](const glm::dvec3& p, auto&) { points.push_back(p); });
+    FieldEvaluator ours(many), theirs(one);
+    EXPECT_TRUE(ours.asks_together());
+    EXPECT_FALSE(theirs.asks_together());
+    std::vector<double> values(points.size()), expected(points.size());
+    std::vector<glm::dvec3> gradients(points.size()), expected_gradients(points.size());
+    ours.values(points, values);
+    theirs.values(points, expected);
+    EXPECT_EQ(values, expected);
+    EXPECT_GE(most, 256) << "so many are asked at once";
+    ours.gradients(points, values, gradients);
+    theirs.gradients(points, expected, expected_gradients);
+    EXPECT_EQ(values, expected);
+    EXPECT_EQ(gradients, expected_gradients);
+    std::vector<Box> boxes;
+    for (size_t i = 0; i < points.size(); ++i) boxes.push_back({points[i] - 0.01 * static_cast<double>(i), points[i] + 0.1});
+    boxes.push_back({glm::dvec3(-std::numeric_limits<double>::infinity()), glm::dvec3(1.0)});
+    std::vector<Interval> bounds(boxes.size());
+    ours.bounds(boxes, bounds);
+    for (size_t i = 0; i < boxes.size(); ++i) {
+      const Interval each = theirs.bounds(boxes[i]), same = ours.bounds(boxes[i]);
+      EXPECT_TRUE(bounds[i].lower == each.lower && bounds[i].upper == each.upper) << i;
+      EXPECT_TRUE(same.lower == each.lower && same.upper == each.upper) << i;
+    }
+    for (size_t i = 0; i < 20; ++i) {
+      const FieldJet a = ours.jet(points[i]), b = theirs.jet(points[i]);
+      EXPECT_EQ(a.value, b.value);
+      EXPECT_EQ(a.gradient, b.gradient);
+      EXPECT_EQ(a.hessian, b.hessian);
+    }
+  }
+}
+
 TEST(FieldFromFunctions, AgreesWithTheShapeWhateverIsGiven) {
   const unsigned seed = random_seed();
   const Field exact = make_shape("torus", {{"major", {1.0}}, {"minor", {0.4}}});
@@ -146,6 +203,12 @@ TEST(FieldFromFunctions, WhatIsMissingIsNamed) {
     return field_from_functions(functions);
   };
   EXPECT_THROW(field_of([](FieldFunctions& f) { f.value = nullptr; }), InputError);
+  EXPECT_THROW(field_of([](FieldFunctions& f) { f.values = [](std::span<const glm::dvec3>, std::span<double>) {}; }), InputError);
+  EXPECT_THROW(field_of([](FieldFunctions& f) {
+                 f.gradient = [](const glm::dvec3& p) { return p; };
+                 f.gradients = [](std::span<const glm::dvec3>, std::span<glm::dvec3>) {};
+               }),
+               InputError);
   EXPECT_THROW(field_of([](FieldFunctions& f) { f.lipschitz = 0.0; }), InputError);
   EXPECT_THROW(field_of([](FieldFunctions& f) { f.lipschitz = std::numeric_limits<double>::infinity(); }), InputError);
   EXPECT_THROW(field_of([](FieldFunctions& f) { f.extent = {}; }), InputError);

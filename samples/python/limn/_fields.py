@@ -15,24 +15,30 @@ def shape(name: str, **parameters: Any) -> Field:
 
 
 def field(
-    function: Callable[[float, float, float], float],
+    function: Callable[[Any, Any, Any], Any],
     *,
     bounds: Sequence[Sequence[float]],
     lipschitz: float,
-    gradient: Optional[Callable[[float, float, float], Sequence[float]]] = None,
+    gradient: Optional[Callable[[Any, Any, Any], Any]] = None,
+    vectorized: bool = False,
 ) -> Field:
-    """A field from any Python function of x, y and z (floats, world units), negative inside.
+    """A field from any Python function of x, y and z (world units), negative inside: a trained network, another library.
 
-    This is the slow path: each value is a call with the interpreter's lock, for which threads wait in turn: some 8 microseconds of one
-    core, and a picture of 80 x 60 pixels asks for 300,000 values. A formula (limn.formula) or samples (limn.field_from_grid) take a small
-    part of that time.
+    vectorized: the function takes arrays x, y and z (n,) and returns (n,), or (n, 1). A picture asks for some ten values a ray, at least 16
+    of them at a time, and a mesh or a level set for hundreds: what takes little longer for many points than for one is drawn in a small
+    part of the time. A point's value must not depend on the others.
+
+    Otherwise it takes and returns floats, and is slow: each value is a call with the interpreter's lock, for which threads wait in turn. A
+    formula (limn.formula) or samples (limn.field_from_grid) take a small part of the time of either.
 
     bounds: (2, 3), a box that holds the surface. lipschitz: |f(p) - f(q)| <= lipschitz * |p - q| everywhere; pictures and the true border
-    rely on it. gradient: a function to (3,); missing: central differences.
+    rely on it. gradient: a function to (3,), vectorized to (n, 3); missing: central differences.
     """
     if isinstance(lipschitz, bool) or not isinstance(lipschitz, (int, float)):
         raise _text.refuse("lipschitz", lipschitz, "is no number", "a number above 0")
-    return _limn.field_of(function, bounds, float(lipschitz), gradient)
+    if not isinstance(vectorized, bool):
+        raise _text.refuse("vectorized", vectorized, "is no flag", "True or False")
+    return _limn.field_of(function, bounds, float(lipschitz), gradient, vectorized)
 
 
 def formula(function: Callable[[Any, Any, Any], Any], *, bounds: Optional[Sequence[Sequence[float]]] = None, name: str = "formula") -> Field:

@@ -40,12 +40,15 @@ Membrane membrane_in(const MeshPart& part, const Box& box, bool with_normals) {
   membrane.passes = !(from_half > slope * radius + kWindingError);
   membrane.faces_anywhere = membrane.passes && !std::isfinite(slope);
   if (!membrane.passes || membrane.faces_anywhere || !with_normals) return membrane;
-  for (int k = 0; k < 9; ++k) {
-    const glm::dvec3 at = k == 8 ? box.center() : glm::mix(box.lower, box.upper, glm::dvec3(k & 1, k >> 1 & 1, k >> 2));
-    const glm::dvec3 gradient = winding.gradient(at);
+  std::array<glm::dvec3, 9> places{box.center()};
+  for (size_t k = 0; k < 8; ++k) places[k + 1] = glm::mix(box.lower, box.upper, glm::dvec3(k & 1, k >> 1 & 1, k >> 2));
+  std::array<Winding::Potential, 9> potentials;
+  winding.potentials(places, potentials);
+  for (size_t k = 0; k < 9; ++k) {
+    const glm::dvec3& gradient = potentials[k].gradient;
     const double length = glm::length(gradient);
     if (!(length > 0.0)) membrane.faces_anywhere = true;
-    membrane.normals[static_cast<size_t>(k)] = length > 0.0 ? -gradient / length : glm::dvec3(0.0);
+    membrane.normals[k] = length > 0.0 ? -gradient / length : glm::dvec3(0.0);
   }
   return membrane;
 }

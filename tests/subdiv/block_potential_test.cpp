@@ -39,7 +39,7 @@ TEST(BlockPotential, TellsWhatEachNodeIsAskedByItself) {
   Random random(seed);
   double most_off = 0.0, most_turned = 0.0;
   int near = 0, crossed = 0;
-  for (int k = 0; k < 120; ++k) {
+  for (int k = 0; k < 300; ++k) {
     SCOPED_TRACE(fmt::format("seed {}, mesh {}", seed, k));
     const TriangleMesh mesh = open_mesh(random);
     const Winding winding(mesh);

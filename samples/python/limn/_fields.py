@@ -24,9 +24,9 @@ def field(
 ) -> Field:
     """A field from any Python function of x, y and z (world units), negative inside: a trained network, another library.
 
-    vectorized: the function takes arrays x, y and z (n,) and returns (n,), or (n, 1). A picture asks for some ten values a ray, at least 16
-    of them at a time, and a mesh or a level set for hundreds: what takes little longer for many points than for one is drawn in a small
-    part of the time. A point's value must not depend on the others.
+    vectorized: the function takes arrays x, y and z (n,) and returns (n,), or (n, 1). A picture asks for some fifty values a ray, mostly 16
+    at a time, a mesh or a level set for hundreds at a time: what takes little longer for many points than for one is drawn in a small part
+    of the time. A point's value must not depend on the others.
 
     Otherwise it takes and returns floats, and is slow: each value is a call with the interpreter's lock, for which threads wait in turn. A
     formula (limn.formula) or samples (limn.field_from_grid) take a small part of the time of either.

@@ -12,7 +12,7 @@ namespace limn {
 struct FieldFunctions {
   std::function<double(const glm::dvec3&)> value{};         ///< Negative inside; finite everywhere.
   std::function<glm::dvec3(const glm::dvec3&)> gradient{};  ///< Missing: central differences, over a 1e-5th of the extent's longest side.
-  /// Instead of `value`: of many points at once, up to some ten thousand; sizes equal. For networks and arrays, which take
+  /// Instead of `value`: of many points at once, up to a thousand or so; sizes equal. For networks and arrays, which take
   /// little longer for many points than for one. A point's value must not depend on the others.
   std::function<void(std::span<const glm::dvec3> points, std::span<double> values)> values{};
   /// Instead of `gradient`.

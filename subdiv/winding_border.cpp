@@ -140,42 +140,43 @@ void store_lanes(const Reals3& gradient, const Turn& turn, int at, EightPotentia
   store(turn.across, out.across + at);
 }
 
-/// Triangles from all edges to one point close the mesh: their angles are the number's but for a whole one.
-void potentials_at(std::span<const Winding::BorderEdge> border, const EightPoints& points, EightPotentials& out) {
-  // Along no axis, diagonal or edge that a model is likely to have.
-  constexpr glm::dvec3 kFarAway{0.3169914974459893, 0.5602276283961604, 0.7652851722910635};
+HWY_INLINE const Winding::BorderEdge& edge_of(const Winding::BorderEdge& edge) { return edge; }
+HWY_INLINE const Winding::BorderEdge& edge_of(const SeenEdge& seen) { return seen.edge; }
+
+/// Gradients of edges, and the product of their angles, `angle_of(lanes, edge)`.
+template <class Edge, class AngleOf>
+HWY_INLINE void add_up(std::span<const Edge> edges, const EightPoints& points, const AngleOf& angle_of, EightPotentials& out) {
   for (int at = 0; at < 8; at += kWidth) {
     const Reals3 p = load3(points.at, at);
     const Reals zero = reals(0.0);
     Reals3 sum{zero, zero, zero};
     TurnProduct turns = no_turn();
     EdgeWalk walk = no_edge_yet(p);
-    for (const Winding::BorderEdge& edge : border) {
-      const EdgeLanes lanes = next_edge(walk, edge, p);
-      sum = sum + pull_of(lanes, edge.multiplicity);
-      multiply(turns, half_angle(lanes, kFarAway), edge.multiplicity);
+    for (const Edge& edge : edges) {
+      const EdgeLanes lanes = next_edge(walk, edge_of(edge), p);
+      sum = sum + pull_of(lanes, edge_of(edge).multiplicity);
+      multiply(turns, angle_of(lanes, edge), edge_of(edge).multiplicity);
     }
     store_lanes(per_whole_sphere(sum), turns.turn, at, out);
   }
 }
 
+/// Triangles from all edges to one point close the mesh: their angles are the number's but for a whole one.
+void potentials_at(std::span<const Winding::BorderEdge> border, const EightPoints& points, EightPotentials& out) {
+  // Along no axis, diagonal or edge that a model is likely to have.
+  constexpr glm::dvec3 kFarAway{0.3169914974459893, 0.5602276283961604, 0.7652851722910635};
+  add_up(
+      border, points, [&](const EdgeLanes& lanes, const Winding::BorderEdge&) { return half_angle(lanes, kFarAway); }, out);
+}
+
 /// What lies behind each edge as the center sees it, between the edge and infinity, is seen from there as a line. From elsewhere it is two
 /// triangles: from the edge to where the way to b leads, and from a to where both ways lead.
 void changes_at(std::span<const SeenEdge> edges, const EightPoints& points, EightPotentials& out) {
-  for (int at = 0; at < 8; at += kWidth) {
-    const Reals3 p = load3(points.at, at);
-    const Reals zero = reals(0.0);
-    Reals3 sum{zero, zero, zero};
-    TurnProduct turns = no_turn();
-    EdgeWalk walk = no_edge_yet(p);
-    for (const SeenEdge& seen : edges) {
-      const EdgeLanes lanes = next_edge(walk, seen.edge, p);
-      sum = sum + pull_of(lanes, seen.edge.multiplicity);
-      const Turn behind_a{lanes.a.length * seen.together + dot(reals3(seen.ways), lanes.a.way), dot(reals3(seen.normal), lanes.a.way)};
-      multiply(turns, half_angle(lanes, seen.to_b) * behind_a, seen.edge.multiplicity);
-    }
-    store_lanes(per_whole_sphere(sum), turns.turn, at, out);
-  }
+  const auto angle_of = [](const EdgeLanes& lanes, const SeenEdge& seen) {
+    const Turn behind_a{lanes.a.length * seen.together + dot(reals3(seen.ways), lanes.a.way), dot(reals3(seen.normal), lanes.a.way)};
+    return half_angle(lanes, seen.to_b) * behind_a;
+  };
+  add_up(edges, points, angle_of, out);
 }
 
 void gradients_at(std::span<const Winding::BorderEdge> border, const EightPoints& points, EightPoints& gradients) {

@@ -6,8 +6,6 @@
 # them all.
 
 # %%
-import math
-
 import limn
 import numpy
 
@@ -52,17 +50,13 @@ print(f"{hit.mean():.1%} of the pixels show the cup, between {picture.depth[hit]
 # %% [markdown]
 # ## As a Python function, and as samples
 #
-# Any function of x, y and z is drawn, too, with a bound on its slope (its Lipschitz constant) and a box around the surface. Each value is
-# a call, which is slow. Samples on a grid are quick again; what they lose shows in the border.
-
+# Any function of arrays x, y and z is drawn, too, such as a trained network, with a bound on its slope (its Lipschitz constant) and a box
+# around the surface. limn asks for many points at a time; of one that takes single numbers (without `vectorized`) each value is a call,
+# which is slow. Samples on a grid are quick again; what they lose shows in the border.
 
 # %%
-def in_python(x, y, z):
-    return math.sqrt(x * x + z * z + (y - 0.3 * math.sqrt(x * x + z * z + 0.05)) ** 2) - 0.8
-
-
-called = limn.field(in_python, bounds=[(-1.2, -1.2, -1.2), (1.2, 1.5, 1.2)], lipschitz=1.4)
-small = limn.render(field, size=(32, 24), samples=1)
+called = limn.field(drop, bounds=[(-1.2, -1.2, -1.2), (1.2, 1.5, 1.2)], lipschitz=1.4, vectorized=True)
+small = limn.render(field, size=(160, 120), samples=1)
 assert (limn.render(called, camera=small.camera, samples=1).id == small.id).all()
 
 axis = numpy.linspace(-1.5, 1.5, 61)

@@ -137,8 +137,8 @@ class EdgeShells {
       // As Winding::gradient_bound has it: the derivatives of the order n are no larger than (n + 1)! / |r|^(n + 2), and their integral
       // over an edge no larger than (n + 1)! / distance^n times what it pulls.
       const double length = glm::distance(edge.a, edge.b), per = 1.0 / distance;
-      double term = std::abs(edge.multiplicity) * length / (4.0 * std::numbers::pi) * per * per * per /
-                    std::sqrt(distance * distance + 0.25 * length * length);
+      double term =
+          edge.multiplicity * length / (4.0 * std::numbers::pi) * per * per * per / std::sqrt(distance * distance + 0.25 * length * length);
       for (double& sum : at.terms) sum += term *= per;
     }
   }

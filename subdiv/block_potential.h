@@ -9,9 +9,9 @@
 
 namespace limn {
 
-/// The number but for a whole one, and its gradient, at each node. Edges of the border near the block are asked at each of them. What the
-/// others do changes so smoothly that polynomials through a few samples tell it: the surface {w = 1/2} lies less than kMostOff_voxels
-/// beside its place for them, or they are near.
+/// The number but for a whole one, from any range, and its gradient, at each node. Edges of the border near the block are asked at each of
+/// them. What the others do changes so smoothly that polynomials through a few samples tell it: the surface {w = 1/2} lies less than
+/// kMostOff_voxels beside its place for them, or they are near.
 class BlockPotential {
  public:
   BlockPotential(const BlockNodes& nodes, const Winding& winding);

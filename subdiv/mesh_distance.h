@@ -50,7 +50,8 @@ class Winding {
   /// Clusters count as dipoles beyond `far` of their radii.
   double number(const glm::dvec3& point, double far = kFarLook) const;
 
-  /// A stretch of the surface's border (corners welded by position, opposite uses cancelled), `multiplicity` times over.
+  /// A stretch of the surface's border (corners welded by position, opposite uses cancelled), as its triangles go along it; `multiplicity`
+  /// times over, at least once. Mostly each begins where the one before it ends.
   struct BorderEdge {
     glm::dvec3 a{0.0}, b{0.0};
     int multiplicity = 1;
@@ -72,6 +73,7 @@ class Winding {
 
   /// No gradient within `radius` of `center` is longer than this.
   double gradient_bound(const glm::dvec3& center, double radius) const;
+  /// The border, eight edges each.
   const std::vector<EdgeGroup>& border_groups() const { return border_groups_; }
 
  private:

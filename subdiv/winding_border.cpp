@@ -122,10 +122,9 @@ HWY_INLINE Turn of_ordinary_length(const Turn& turn) {
 }
 
 HWY_INLINE void multiply(TurnProduct& product, Turn half, int times) {
-  if (times < 0) half.across = -half.across;
   // On a line through an end of the edge along which its triangle leads there is no angle, or as good as none.
   half.along = select(maximum(abs(half.along), abs(half.across)) > reals(0.0), half.along, reals(1.0));
-  for (int k = std::abs(times); k > 0; --k) {
+  for (int k = 0; k < times; ++k) {
     product.turn = product.turn * half;
     // Of so many, models of any usual size make an ordinary number.
     if (++product.count % 4 == 0) product.turn = of_ordinary_length(product.turn);
@@ -223,7 +222,7 @@ double bound_about(std::span<const EdgeGroup> border, const glm::dvec3& center, 
       const Reals times = load(group.times + at), distance = distance_to(a, b, p) - radius, length_of_edge = length(b - a);
       if (!hn::AllFalse(RealTag(), distance <= reals(0.0))) return std::numeric_limits<double>::infinity();
       const Reals root = square_root(square(distance) + square(length_of_edge) * 0.25), per = reals(1.0) / (distance * root);
-      const Reals pull = abs(times) * length_of_edge * per;
+      const Reals pull = times * length_of_edge * per;
       add(pull, largest + at);
       add(pull * 2.0 * (root * per), change + at);
       const Reals3 way_a = a - p, way_b = b - p;

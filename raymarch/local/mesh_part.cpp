@@ -13,9 +13,6 @@ namespace {
 /// Beyond so many near a block the tree is quicker.
 constexpr size_t kManyTriangles = 20'000;
 
-/// What the tree of dipoles may be off by.
-constexpr double kWindingError = 0.03;
-
 /// The surface over the holes of an open mesh, where the winding number is one half: whether a box may hold some of it, and how it faces.
 struct Membrane {
   bool passes = false;
@@ -34,10 +31,11 @@ Membrane membrane_in(const MeshPart& part, const Box& box, bool with_normals) {
   // As if all edges were as near as the nearest could be: quicker than asking each.
   const glm::dvec3 away = box.center() - glm::clamp(box.center(), part.body->holes().lower, part.body->holes().upper);
   const double distance = glm::length(away) - radius;
-  if (distance > 0.0 && from_half > part.body->length_of_holes() / (4.0 * std::numbers::pi * distance * distance) * radius + kWindingError)
+  if (distance > 0.0 &&
+      from_half > part.body->length_of_holes() / (4.0 * std::numbers::pi * distance * distance) * radius + Winding::kFarError)
     return membrane;
   const double slope = winding.gradient_bound(box.center(), radius);
-  membrane.passes = !(from_half > slope * radius + kWindingError);
+  membrane.passes = !(from_half > slope * radius + Winding::kFarError);
   membrane.faces_anywhere = membrane.passes && !std::isfinite(slope);
   if (!membrane.passes || membrane.faces_anywhere || !with_normals) return membrane;
   std::array<glm::dvec3, 9> places{box.center()};

@@ -1,6 +1,7 @@
 #include "raymarch/level_set/brick_layout.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -55,24 +56,6 @@ glm::ivec3 face_step(int face) {
   return step;
 }
 
-/// Gives each layer its place: as many to a block as its nine nodes along the axis hold.
-void place_layers(BrickLayout& layout) {
-  struct Open {
-    size_t block = 0;
-    int next = kBrickNodes;  ///< Its first free node.
-  };
-  std::array<Open, 3> open;
-  layout.blocks = layout.crossed.size();
-  for (BrickLayer& layer : layout.layers) {
-    const int axis = layer.face / 2, depth = layer_depth(axis);
-    Open& at = open[static_cast<size_t>(axis)];
-    if (at.next + depth > kBrickNodes) at = {layout.blocks++, 0};
-    layer.block = at.block;
-    layer.slot = at.next;
-    at.next += depth;
-  }
-}
-
 /// Which of them, in order, stands over each face that is reached: BrickLayout::beside.
 std::vector<std::array<std::int32_t, 6>> find_beside(std::span<const Candidate> crossed) {
   std::vector<std::uint64_t> keys(crossed.size());
@@ -107,10 +90,8 @@ std::vector<Candidate> crossed_in_order(std::span<const Candidate> candidates) {
   return crossed;
 }
 
-BrickLayout lay_out(std::span<const Candidate> candidates) {
-  BrickLayout layout;
-  layout.crossed = crossed_in_order(candidates);
-  layout.beside = find_beside(layout.crossed);
+/// Those over whose faces no brick stands.
+void find_layers(BrickLayout& layout) {
   for (size_t i = 0; i < layout.crossed.size(); ++i) {
     layout.first_layer.push_back(static_cast<std::uint32_t>(layout.layers.size()));
     for (int face = 0; face < 6; ++face) {
@@ -120,7 +101,92 @@ BrickLayout lay_out(std::span<const Candidate> candidates) {
     }
   }
   layout.first_layer.push_back(static_cast<std::uint32_t>(layout.layers.size()));
-  place_layers(layout);
+}
+
+/// Of a brick over a face: node -1 is node 7 of the one before, node 9 is node 1 of the one behind.
+int node_over(int face) { return face % 2 == 0 ? kBrickCells - 1 : 1; }
+
+/// What each brick's own stencils read of it, and those of the bricks beside it.
+void find_rows(BrickLayout& layout) {
+  layout.rows.resize(layout.crossed.size());
+  parallel_parts(layout.crossed.size(), size_t{256}, [&](const IndexRange<size_t>& range) {
+    for (size_t i = range.begin(); i < range.end(); ++i) layout.rows[i] = rows_read(layout.crossed[i].cells);
+  });
+  parallel_parts(layout.crossed.size(), size_t{256}, [&](const IndexRange<size_t>& range) {
+    for (size_t i = range.begin(); i < range.end(); ++i)
+      for (int face = 0; face < 6; ++face) {
+        const std::int32_t other = layout.beside[i][static_cast<size_t>(face)];
+        if (other < 0) continue;
+        const BrickRows read = rows_read_over(layout.crossed[i].cells, face, node_over(face));
+        BrickRows& rows = layout.rows[static_cast<size_t>(other)];
+        std::atomic_ref(rows.low).fetch_or(read.low, std::memory_order_relaxed);
+        std::atomic_ref(rows.high).fetch_or(read.high, std::memory_order_relaxed);
+      }
+  });
+}
+
+/// Of so many bricks one after the other, and of their layers.
+class PartOfRows {
+ public:
+  void place(BrickLayout& layout, size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      layout.first_row[i] = packing_.place(layout.rows[i]);
+      for (size_t k = layout.first_layer[i]; k < layout.first_layer[i + 1]; ++k) {
+        BrickLayer& layer = layout.layers[k];
+        const BrickRows read = rows_read_over(layout.crossed[i].cells, layer.face, 0);
+        if (layer.face < 4)
+          layer.first_row = packing_.place(read);
+        else
+          add_across_z(layer, read);
+      }
+    }
+    place_across_z();
+  }
+  std::int64_t size() const { return packing_.size(); }
+
+ private:
+  void add_across_z(BrickLayer& layer, const BrickRows& read) {
+    layer.slot = layer_depth(2) * static_cast<int>(waiting_.size());
+    waiting_.push_back(&layer);
+    rows_.add(read);
+    if (waiting_.size() == kBrickNodes / layer_depth(2)) place_across_z();
+  }
+  void place_across_z() {
+    const std::int64_t row = packing_.place(rows_);
+    for (BrickLayer* const layer : waiting_) layer->first_row = row;
+    waiting_.clear();
+    rows_ = {};
+  }
+
+  RowPacking packing_;
+  std::vector<BrickLayer*> waiting_{};  ///< Across z, that share rows.
+  BrickRows rows_{};                    ///< That they read.
+};
+
+/// Parts of the bricks by themselves, so that threads share the work; the same ones whatever their number.
+void place_rows(BrickLayout& layout) {
+  constexpr size_t kPart = 4096;
+  const size_t count = layout.crossed.size();
+  layout.first_row.resize(count);
+  std::vector<PartOfRows> parts((count + kPart - 1) / kPart);
+  parallel_for(size_t{0}, parts.size(), [&](size_t k) { parts[k].place(layout, k * kPart, std::min((k + 1) * kPart, count)); });
+  std::int64_t before = kBrickRows;
+  for (size_t k = 0; k < parts.size(); before += parts[k++].size()) {
+    for (size_t i = k * kPart; i < std::min((k + 1) * kPart, count); ++i) {
+      layout.first_row[i] += before;
+      for (size_t l = layout.first_layer[i]; l < layout.first_layer[i + 1]; ++l) layout.layers[l].first_row += before;
+    }
+  }
+  layout.row_count = before + kBrickRows;
+}
+
+BrickLayout lay_out(std::span<const Candidate> candidates) {
+  BrickLayout layout;
+  layout.crossed = crossed_in_order(candidates);
+  layout.beside = find_beside(layout.crossed);
+  find_layers(layout);
+  find_rows(layout);
+  place_rows(layout);
   return layout;
 }
 
@@ -188,21 +254,17 @@ std::uint64_t key_of(const glm::ivec3& origin) {
 BrickNeighbors BrickLayout::neighbors_of(size_t brick) const {
   constexpr int kStep[3] = {kBrickNodes * kBrickNodes, kBrickNodes, 1};
   BrickNeighbors neighbors;
-  // From node 0 of a cell at the brick's start, or node 7 of one at its end, to node `to` along the axis in another block.
-  const auto set = [&](int face, size_t block, int to) {
-    const std::int64_t elements = (static_cast<std::int64_t>(block) - static_cast<std::int64_t>(brick)) * kBrickStride +
-                                  (to - (face % 2 == 0 ? 0 : kBrickCells - 1)) * kStep[face / 2];
+  // From node 0 of a cell at the brick's start, or node 7 of one at its end, to node `to` along the axis of what lies at another row.
+  const auto set = [&](int face, std::int64_t row, int to) {
+    const std::int64_t elements = (row - first_row[brick]) * kBrickNodes + (to - (face % 2 == 0 ? 0 : kBrickCells - 1)) * kStep[face / 2];
     neighbors.face[face] = static_cast<std::int32_t>(elements * static_cast<std::int64_t>(sizeof(std::int16_t)));
   };
   for (int face = 0; face < 6; ++face) {
     const std::int32_t other = beside[brick][static_cast<size_t>(face)];
-    // Node -1 is node 7 of the brick before, node 9 is node 1 of the one behind.
-    if (other >= 0) set(face, static_cast<size_t>(other), face % 2 == 0 ? kBrickCells - 1 : 1);
+    if (other >= 0) set(face, first_row[static_cast<size_t>(other)], node_over(face));
   }
-  for (size_t k = first_layer[brick]; k < first_layer[brick + 1]; ++k) {
-    const BrickLayer& layer = layers[k];
-    set(layer.face, layer.block, layer.slot + (layer.face == 5 ? 1 : 0));
-  }
+  for (size_t k = first_layer[brick]; k < first_layer[brick + 1]; ++k)
+    set(layers[k].face, layers[k].first_row, layers[k].slot + (layers[k].face == 5 ? 1 : 0));
   return neighbors;
 }
 

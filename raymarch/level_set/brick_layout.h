@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "raymarch/level_set/brick_rows.h"
 #include "raymarch/level_set/bricks.h"
 #include "sdf/crossed_cells.h"
 #include "sdf/level_set_data.h"
@@ -48,28 +49,29 @@ struct Candidate {
 /// Orders by x, then y, then z.
 std::uint64_t key_of(const glm::ivec3& origin);
 
-/// Nodes beyond a brick's face that stencils of its cells reach, where no brick has them: 9 x 9 of one layer across x or y, of two across
-/// z, whose values are read in pairs. Layers across one axis share a block of the size of a brick, each from its slot on along that axis,
-/// so that the step from node to node is a brick's.
+/// Nodes beyond a brick's face that stencils of its cells reach, where no brick has them: of one layer across x or y, of two across z,
+/// whose values are read in pairs. They lie in rows as a brick's do, those across z four layers to a row.
 struct BrickLayer {
   std::uint32_t brick = 0;
-  int face = 0;      ///< See BrickNeighbors.
-  size_t block = 0;  ///< As bricks are numbered.
-  int slot = 0;
+  int face = 0;                ///< See BrickNeighbors.
+  int slot = 0;                ///< Of layers across z the first of the row's nodes that is theirs.
+  std::int64_t first_row = 0;  ///< Where the row of the layer's nodes with x = y = 0 lies; those along the face's axis count from it.
 
   /// Of the layer's nodes along the face's axis, from the brick's first one.
   int first_node() const { return face % 2 == 0 ? -1 : face == 5 ? kBrickNodes - 1 : kBrickNodes; }
 };
 inline constexpr int layer_depth(int axis) { return axis == 2 ? 2 : 1; }
 
-/// Every brick's place in order, and what lies beyond them.
+/// Every brick's place in order, and where its values lie.
 struct BrickLayout {
   std::vector<Candidate> crossed;
   /// The bricks over each brick's faces; -1 where there is none, or where no stencil reaches beyond the face.
   std::vector<std::array<std::int32_t, 6>> beside;
+  std::vector<BrickRows> rows;             ///< That are read of each brick.
+  std::vector<std::int64_t> first_row;     ///< Where each brick's row of x = y = 0 lies.
   std::vector<BrickLayer> layers;          ///< By brick, then by face.
   std::vector<std::uint32_t> first_layer;  ///< Of each brick, and the end.
-  size_t blocks = 0;                       ///< Bricks, and blocks of layers behind them.
+  std::int64_t row_count = 0;              ///< Of all rows, and as many as a brick has before and behind them.
 
   BrickNeighbors neighbors_of(size_t brick) const;
 };

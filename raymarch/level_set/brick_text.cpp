@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <bit>
-#include <span>
+#include <cstring>
+#include <limits>
 
 #include "raymarch/level_set/brick_layout.h"
 #include "sdf/error.h"
@@ -14,10 +15,15 @@ namespace {
 
 size_t count_of(const RayBricks& bricks) { return bricks.neighbors.size(); }
 
-std::span<const std::int16_t> nodes_of(const RayBricks& bricks, size_t brick) {
-  // The element behind the last node pads pairs; it is no value.
-  return std::span(bricks.values).subspan(brick * kBrickStride, kBrickStride - 1);
+CrossedCells crossed_in(const RayBricks& bricks, size_t brick) {
+  CrossedCells crossed{.cells = {}, .any = true};
+  static_assert(sizeof crossed.cells == 8 * sizeof(std::uint64_t));
+  std::memcpy(crossed.cells, &bricks.crossed[8 * brick], sizeof crossed.cells);
+  return crossed;
 }
+
+/// Rows of nine values along z that the brick's own cells and stencils read: of the others nothing is kept.
+BrickRows rows_of(const RayBricks& bricks, size_t brick) { return rows_read(crossed_in(bricks, brick)); }
 
 template <class Three>
 std::string vector_text(const Three& v) {
@@ -26,7 +32,10 @@ std::string vector_text(const Three& v) {
 
 std::string line_of(const RayBricks& bricks, size_t brick) {
   const SurfaceBound& bound = bricks.groups.front().bounds[brick];
-  const auto [least, largest] = std::ranges::minmax(nodes_of(bricks, brick));
+  const BrickRows rows = rows_of(bricks, brick);
+  std::int16_t least = std::numeric_limits<std::int16_t>::max(), largest = std::numeric_limits<std::int16_t>::lowest();
+  for (int k = 0; k < kBrickElements; ++k)
+    if (rows.has(k / kBrickNodes)) least = std::min(least, bricks.value(brick, k)), largest = std::max(largest, bricks.value(brick, k));
   return fmt::format("brick {}: origin {}, values {} to {}, crossed {}, cells {} to {}, slab {}\n", brick, vector_text(bound.origin), least,
                      largest, crossed_cells_in(bricks, brick), vector_text(bound.lower), vector_text(bound.upper), bound.slab);
 }
@@ -34,9 +43,8 @@ std::string line_of(const RayBricks& bricks, size_t brick) {
 std::string header_of(const RayBricks& bricks) {
   size_t crossed = 0;
   for (size_t brick = 0; brick < count_of(bricks); ++brick) crossed += static_cast<size_t>(crossed_cells_in(bricks, brick));
-  std::string text =
-      fmt::format("bricks: {}, crossed cells {} from {} to {}, layer blocks {}\n", count_of(bricks), crossed, vector_text(bricks.lower),
-                  vector_text(bricks.upper), bricks.values.size() / kBrickStride - count_of(bricks));
+  std::string text = fmt::format("bricks: {}, crossed cells {} from {} to {}, values {}\n", count_of(bricks), crossed,
+                                 vector_text(bricks.lower), vector_text(bricks.upper), bricks.values.size());
   text += fmt::format("grid: voxel_size {}, origin {}, half_width_voxels {}, world_per_step {}\n", bricks.voxel_size,
                       vector_text(bricks.world_from_index.translation), bricks.half_width_voxels, bricks.world_per_step);
   text += fmt::format("bytes: {}, of these spline {}\n", bricks.bytes(), bricks.spline.bytes());
@@ -49,10 +57,8 @@ std::string header_of(const RayBricks& bricks) {
 }  // namespace
 
 int crossed_cells_in(const RayBricks& bricks, size_t brick) {
-  const CrossedCells crossed = crossed_cells_of(nodes_of(bricks, brick).data());
   int count = 0;
-  for (const auto& column : crossed.cells)
-    for (const std::uint8_t bits : column) count += std::popcount(bits);
+  for (size_t word = 8 * brick; word < 8 * (brick + 1); ++word) count += std::popcount(bricks.crossed[word]);
   return count;
 }
 
@@ -71,12 +77,13 @@ std::string text_of_brick(const RayBricks& bricks, size_t brick) {
                       .problem = "no such brick",
                       .expected = count == 0 ? "nothing: the surface crosses no cell" : fmt::format("0 to {}", count - 1)});
   }
-  const std::span<const std::int16_t> nodes = nodes_of(bricks, brick);
+  const BrickRows rows = rows_of(bricks, brick);
   std::string text = line_of(bricks, brick);
   for (int z = 0; z < kBrickNodes; ++z) {
     text += fmt::format("slice z {}\n", z);
     for (int y = 0; y < kBrickNodes; ++y) {
-      for (int x = 0; x < kBrickNodes; ++x) text += fmt::format("{:>7}", nodes[static_cast<size_t>(brick_element(x, y, z))]);
+      for (int x = 0; x < kBrickNodes; ++x)
+        text += rows.has(kBrickNodes * x + y) ? fmt::format("{:>7}", bricks.value(brick, brick_element(x, y, z))) : "      .";
       text += "\n";
     }
   }

@@ -13,11 +13,12 @@ namespace limn {
 /// Cells of the brick that the surface crosses, of 512.
 int crossed_cells_in(const RayBricks& bricks, size_t brick);
 
-/// Every brick in order: its first node in index coordinates, the least and the largest of its 9^3 values, how many cells the surface
+/// Every brick in order: its first node in index coordinates, the least and the largest of its values, how many cells the surface
 /// crosses and around which cells they lie (local), and how thick the slab about its plane is, in steps.
 std::string text_of(const RayBricks& bricks);
 
-/// A brick's line, then its values: for z = 0 to 8 a slice of nine rows (y = 0 to 8) of nine numbers (x = 0 to 8). Throws InputError
+/// A brick's line, then its values: for z = 0 to 8 a slice of nine rows (y = 0 to 8) of nine numbers (x = 0 to 8), or of
+/// dots where no value is kept. Throws InputError
 /// (field "brick") where there is no such brick.
 std::string text_of_brick(const RayBricks& bricks, size_t brick);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <span>
 
 #include "raymarch/level_set/brick_layout.h"
@@ -16,13 +17,18 @@ namespace {
 using Accessor = nanovdb::FloatGrid::AccessorType;
 
 // Offsets in bytes have to fit in 31 bits.
-constexpr size_t kMostBricks = (size_t{1} << 31) / (kBrickStride * sizeof(std::int16_t)) - 1;
+constexpr std::int64_t kMostRows = (std::int64_t{1} << 31) / (kBrickNodes * static_cast<std::int64_t>(sizeof(std::int16_t))) - 1;
 constexpr float kLargestStep = 32767.0f;
 // A crossed brick whose values span fewer steps than this in its crossed cells would lose digits of its normals.
 constexpr int kFewestSteps = 1000;
 
 /// Left unset, so that each thread touches first what it measures.
 using BrickShapes = std::vector<BrickShape, LargePageAllocator<BrickShape>>;
+
+/// Of a brick, as brick_element() has them.
+const std::int16_t* values_of(const BrickLayout& layout, size_t brick, const RayBricks& bricks) {
+  return bricks.values.data() + layout.first_row[brick] * kBrickNodes;
+}
 
 /// Groups of 2^shift cells to a side of the crossed bricks.
 BrickGroups group_bricks(const BrickLayout& layout, const BrickShapes& shapes, const RayBricks& bricks, int shift) {
@@ -47,7 +53,7 @@ BrickGroups group_bricks(const BrickLayout& layout, const BrickShapes& shapes, c
       for (size_t k = first[g]; k < first[g + 1]; ++k) {
         const auto brick = static_cast<size_t>(members[k].second);
         const glm::ivec3 place = layout.crossed[brick].origin - origin, slot = place >> 3;
-        inside.push_back({place, bricks.values.data() + brick * kBrickStride, &shapes[brick]});
+        inside.push_back({place, values_of(layout, brick, bricks), &shapes[brick]});
         groups.bricks[g * static_cast<size_t>(parts) + static_cast<size_t>((slot.x * per_side + slot.y) * per_side + slot.z)] =
             members[k].second;
       }
@@ -71,29 +77,24 @@ float scale_for(const BrickLayout& layout, float background) {
   return least * scale >= static_cast<float>(kFewestSteps) ? scale : 0.0f;
 }
 
-template <class Reader>
-void fill_brick(const Reader& reader, const glm::ivec3& origin, std::int16_t* to) {
-  NodeSteps steps;
-  reader.load(origin, steps);
-  std::copy(steps.begin(), steps.end(), to);
-  std::fill(to + steps.size(), to + kBrickStride, std::int16_t{0});
+/// The rows that are read.
+void fill_rows(const NodeSteps& steps, const BrickRows& rows, std::int16_t* to) {
+  for (int row = 0; row < kBrickRows; ++row)
+    if (rows.has(row)) std::copy_n(&steps[static_cast<size_t>(row * kBrickNodes)], kBrickNodes, to + row * kBrickNodes);
 }
 
-/// A layer's nodes lie as they would in a brick whose first ones are its block's.
+/// `first`: where the layer's nodes would begin if it were a brick.
 template <class Reader>
-void fill_layer(const Reader& reader, const BrickLayer& layer, const glm::ivec3& origin, std::int16_t* block) {
-  const int axis = layer.face / 2, depth = layer_depth(axis), from = layer.first_node();
-  glm::ivec3 count(kBrickNodes);
-  count[axis] = depth;
-  for (int x = 0; x < count.x; ++x) {
-    for (int y = 0; y < count.y; ++y) {
-      for (int z = 0; z < count.z; ++z) {
-        glm::ivec3 node(x, y, z), slot = node;
-        node[axis] += from;
-        slot[axis] += layer.slot;
-        block[brick_element(slot.x, slot.y, slot.z)] = reader.steps(origin + node);
-      }
-    }
+void fill_layer(const Reader& reader, const BrickLayer& layer, const Candidate& brick, std::int16_t* first) {
+  const int axis = layer.face / 2;
+  const BrickRows rows = rows_read_over(brick.cells, layer.face, 0);
+  glm::ivec3 from(0);
+  from[axis] = layer.first_node();
+  const int count = axis == 2 ? layer_depth(axis) : kBrickNodes;
+  for (int row = 0; row < kBrickRows; ++row) {
+    if (!rows.has(row)) continue;
+    const glm::ivec3 node = brick.origin + from + glm::ivec3(row / kBrickNodes, row % kBrickNodes, 0);
+    for (int z = 0; z < count; ++z) first[row * kBrickNodes + layer.slot + z] = reader.steps(node + glm::ivec3(0, 0, z));
   }
 }
 
@@ -104,21 +105,25 @@ BrickShapes fill(const MakeReader& reader, const BrickLayout& layout, RayBricks&
   BrickShapes shapes(crossed);
   parallel_parts(crossed, size_t{64}, [&](const IndexRange<size_t>& range) {
     const auto nodes = reader();
+    NodeSteps steps;
     for (size_t i = range.begin(); i < range.end(); ++i) {
-      std::int16_t* const values = bricks.values.data() + i * kBrickStride;
-      fill_brick(nodes, layout.crossed[i].origin, values);
-      shapes[i] = shape_of(values, layout.crossed[i].cells);  // quantised() keeps signs
-      const BrickInCube whole{glm::ivec3(0), values, &shapes[i]};
-      bricks.groups[0].bounds[i] = bound_surface(layout.crossed[i].origin, std::span(&whole, 1));
+      const Candidate& candidate = layout.crossed[i];
+      nodes.load(candidate.origin, steps);
+      bricks.first[i] = static_cast<std::int32_t>(layout.first_row[i] * kBrickNodes * static_cast<std::int64_t>(sizeof(std::int16_t)));
+      fill_rows(steps, layout.rows[i], bricks.values.data() + layout.first_row[i] * kBrickNodes);
+      static_assert(sizeof candidate.cells.cells == 8 * sizeof(std::uint64_t));
+      std::memcpy(&bricks.crossed[8 * i], candidate.cells.cells, sizeof candidate.cells.cells);
+      shapes[i] = shape_of(steps.data(), candidate.cells);  // quantised() keeps signs
+      const BrickInCube whole{glm::ivec3(0), steps.data(), &shapes[i]};
+      bricks.groups[0].bounds[i] = bound_surface(candidate.origin, std::span(&whole, 1));
       bricks.neighbors[i] = layout.neighbors_of(i);
     }
   });
-  std::fill(bricks.values.begin() + static_cast<std::ptrdiff_t>(crossed * kBrickStride), bricks.values.end(), std::int16_t{0});
   parallel_parts(layout.layers.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
     const auto nodes = reader();
     for (size_t i = range.begin(); i < range.end(); ++i) {
       const BrickLayer& layer = layout.layers[i];
-      fill_layer(nodes, layer, layout.crossed[layer.brick].origin, bricks.values.data() + layer.block * kBrickStride);
+      fill_layer(nodes, layer, layout.crossed[layer.brick], bricks.values.data() + layer.first_row * kBrickNodes);
     }
   });
   return shapes;
@@ -130,9 +135,9 @@ void make_from(const MakeReader& reader, const BrickLayout& layout, float scale,
   bricks.world_per_step = 1.0 / static_cast<double>(scale);
   bricks.groups.push_back({.shift = 3, .bounds = std::vector<SurfaceBound>(layout.crossed.size()), .bricks = {}});
   bricks.neighbors.resize(layout.crossed.size());
-  bricks.values.resize(layout.blocks * kBrickStride + kReadBeyond);
-  if (std::any_of(layout.crossed.begin(), layout.crossed.end(), [](const Candidate& c) { return c.covered != 0; }))
-    for (const Candidate& candidate : layout.crossed) bricks.covered.push_back(candidate.covered);
+  bricks.first.resize(layout.crossed.size());
+  bricks.crossed.resize(8 * layout.crossed.size());
+  bricks.values.resize(static_cast<size_t>(layout.row_count * kBrickNodes) + kReadBeyond);
   const BrickShapes shapes = fill(reader, layout, bricks);
   for (const int shift : {4, 5}) bricks.groups.push_back(group_bricks(layout, shapes, bricks, shift));
   bricks.lower = glm::ivec3(std::numeric_limits<int>::max());
@@ -171,7 +176,8 @@ double ms_since(std::chrono::steady_clock::time_point start) {
 }  // namespace
 
 std::int64_t RayBricks::bytes() const {
-  size_t sum = neighbors.size() * sizeof(BrickNeighbors) + values.size() * sizeof(std::int16_t) + covered.size() * sizeof(std::uint64_t);
+  size_t sum = neighbors.size() * sizeof(BrickNeighbors) + values.size() * sizeof(std::int16_t) + first.size() * sizeof(std::int32_t) +
+               crossed.size() * sizeof(std::uint64_t);
   for (const BrickGroups& of : groups) sum += of.bounds.size() * sizeof(SurfaceBound) + of.bricks.size() * sizeof(std::int32_t);
   return static_cast<std::int64_t>(sum) + spline.bytes();
 }
@@ -180,7 +186,7 @@ std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set, bool wit
   const auto start = std::chrono::steady_clock::now();
   const LevelSetData& data = level_set.data();
   const BrickLayout layout = lay_out_bricks(data);
-  if (layout.blocks > kMostBricks || (with_spline && layout.crossed.size() > kMostSplineBricks)) return nullptr;
+  if (layout.row_count > kMostRows || (with_spline && layout.crossed.size() > kMostSplineBricks)) return nullptr;
   auto bricks = std::make_shared<RayBricks>();
   bricks->world_from_index = level_set.info().world_from_index;
   bricks->voxel_size = level_set.info().voxel_size;
@@ -198,7 +204,7 @@ std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set, bool wit
 std::shared_ptr<RayBricks> make_bricks(const NodeReader& nodes, std::span<const BrickPlace> places, float steps_per_unit) {
   const auto start = std::chrono::steady_clock::now();
   const BrickLayout layout = lay_out_bricks(nodes, places);
-  if (layout.blocks > kMostBricks) return nullptr;
+  if (layout.row_count > kMostRows) return nullptr;
   auto bricks = std::make_shared<RayBricks>();
   if (!layout.crossed.empty()) make_from([&nodes] { return nodes; }, layout, steps_per_unit, *bricks);
   bricks->prepare_ms = ms_since(start);

@@ -1,6 +1,6 @@
 #pragma once
-// Internal: the ray-ready form of a level set. Only the blocks of 8^3 cells that the surface crosses are kept, each as 9^3 node values of
-// 16 bits with what bounds the surface in it, and beside them the blocks into which the stencils of their gradients reach.
+// Internal: the ray-ready form of a level set. Of the blocks of 8^3 cells that the surface crosses, those of their 9^3 node values are
+// kept, in 16 bits, that cells which it crosses and the stencils of their gradients read, and what bounds the surface in each.
 
 #include <algorithm>
 #include <cmath>
@@ -17,8 +17,7 @@ namespace limn {
 
 inline constexpr int kBrickCells = 8;
 inline constexpr int kBrickNodes = 9;
-/// Elements from one brick to the next: one more than nodes, so that a pair of values may be read from any of them.
-inline constexpr int kBrickStride = 730;
+inline constexpr int kBrickElements = kBrickNodes * kBrickNodes * kBrickNodes;
 /// Elements behind the last one that loads may bring along.
 inline constexpr int kReadBeyond = 16;
 /// The element of node (x, y, z) of a brick, each in 0..8.
@@ -62,11 +61,16 @@ struct BrickNeighbors {
 struct RayBricks {
   std::vector<BrickGroups> groups{};        ///< Of shift 3, 4 and 5; none where the surface crosses no cell.
   std::vector<BrickNeighbors> neighbors{};  ///< As many.
-  std::vector<std::int16_t, LargePageAllocator<std::int16_t>>
-      values{};           ///< kBrickStride for each brick, then blocks of layers that only stencils read, then kReadBeyond.
-  SplineBricks spline{};  ///< Of the crossed bricks; empty where nobody asked for it.
-  /// For each crossed brick its cells that smaller bricks hold, in which it has no surface (see covered_bit); empty where none is held.
-  std::vector<std::uint64_t> covered{};
+  /// Rows of nine nodes along z that rays read, of all bricks and of layers that only stencils read, in each other's gaps; then
+  /// kReadBeyond.
+  std::vector<std::int16_t, LargePageAllocator<std::int16_t>> values{};
+  /// For each crossed brick where its first node's value lies or would lie, in bytes. The others lie from there on as brick_element() has
+  /// them.
+  std::vector<std::int32_t> first{};
+  /// For each crossed brick its cells in which the surface is: that it crosses and no smaller brick holds. Eight words, bits as cells are
+  /// numbered in BrickHits. Nothing else of its values is kept.
+  std::vector<std::uint64_t> crossed{};
+  SplineBricks spline{};          ///< Of the crossed bricks; empty where nobody asked for it.
   glm::ivec3 lower{0}, upper{0};  ///< Around the crossed cells, index coordinates.
   double world_per_step = 0.0;    ///< What one step of a value stands for.
   // What the bricks were made of, for their dump (brick_text.h): rays do not read it.
@@ -75,6 +79,9 @@ struct RayBricks {
   double prepare_ms = 0.0;
 
   std::int64_t bytes() const;
+  bool crosses(size_t brick, int cell) const { return (crossed[8 * brick + static_cast<size_t>(cell >> 6)] >> (cell & 63) & 1) != 0; }
+  /// Of a node of a crossed cell, or one that stencils of these read.
+  std::int16_t value(size_t brick, int element) const { return values[static_cast<size_t>(first[brick] / 2 + element)]; }
 };
 
 /// The steps that stand for a value. No node lies on the surface itself: half a step to its side keeps its sign. In float until the end, so

@@ -27,7 +27,7 @@ HWY_INLINE Cells cells_of(const RayBricks& bricks, const IndexRays& rays, size_t
   constexpr int kFaces = 6;
   const auto* faces = reinterpret_cast<const std::int32_t*>(bricks.neighbors.data());
   const VI brick = hn::ShiftRight<9>(number), digit = hn::Set(di, 7);
-  const VI base = hn::Mul(brick, hn::Set(di, kBrickBytes));
+  const VI base = hn::GatherIndex(di, bricks.first.data(), brick);
   const VI node[3] = {hn::And(hn::ShiftRight<6>(number), digit), hn::And(hn::ShiftRight<3>(number), digit), hn::And(number, digit)};
   Cells cells;
   const V3 o = load3(rays.origin, i), v = load3(rays.direction, i);

@@ -28,9 +28,6 @@ using MF = hn::Mask<F>;
 HWY_INLINE VF set(float v) { return hn::Set(F(), v); }
 HWY_INLINE VF lerp(VF a, VF b, VF u) { return hn::Add(a, hn::Mul(u, hn::Sub(b, a))); }
 
-/// Bytes from one brick's values to the next one's.
-inline constexpr std::int32_t kBrickBytes = kBrickStride * static_cast<std::int32_t>(sizeof(std::int16_t));
-
 struct V3 {
   VF x, y, z;
 };

@@ -70,7 +70,7 @@ HWY_INLINE FourPairs pairs_along_y(const std::int16_t* base, VI a, VI b) {
   hn::Store(a, i, at_a);
   hn::Store(b, i, at_b);
   static_assert(kStepY == 18);
-  static_assert(brick_element(8, 7, 8) + kBroughtAlong <= kBrickStride + kReadBeyond);
+  static_assert(brick_element(8, 7, 8) + kBroughtAlong <= kBrickElements + kReadBeyond);
   const __m256i words = _mm256_setr_epi16(0, 1, 9, 10, 16, 17, 25, 26, 0, 0, 0, 0, 0, 0, 0, 0);
   const char* const bytes = reinterpret_cast<const char*>(base);
   return pairs_of(turned_round([&](int k) {

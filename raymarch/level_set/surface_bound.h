@@ -17,7 +17,7 @@ struct BrickShape {
   std::int64_t sum[3] = {}, edges[3] = {};
 };
 
-/// Of a brick's kBrickStride values and the cells that change sign in them, without those that smaller bricks hold.
+/// Of a brick's kBrickElements values and the cells that change sign in them, without those that smaller bricks hold.
 BrickShape shape_of(const std::int16_t* values, const CrossedCells& crossed);
 
 /// A brick of the cube that is described, and where in it.

@@ -136,7 +136,7 @@ void fetch(const std::int16_t* values, size_t count) {
 void fetch(const RayBricks& bricks, bool spline, const BrickGroups& groups, std::uint32_t group) {
   const auto fetch_brick = [&](size_t brick) {
     __builtin_prefetch(bricks.neighbors.data() + brick, 0, 2);
-    fetch(bricks.values.data() + brick * kBrickStride, kBrickStride);
+    fetch(bricks.values.data() + bricks.first[brick] / 2, kBrickElements);
     if (spline) fetch(bricks.spline.rests.data() + brick * kSplineStride, kSplineStride);
   };
   if (groups.shift == 3) return fetch_brick(group);

@@ -170,42 +170,37 @@ HWY_INLINE void note(VF t, VI lane, VI cell, MF found, BrickHits& hits) {
   }
 }
 
-/// A packet's cells: their bricks (-1: the surface crosses none of the brick's cells), numbers as in BrickHits, and where their values lie.
+/// A packet's cells: numbers as in BrickHits, and where their values lie.
 struct CellsOfBricks {
-  VI brick, number, offset;
+  VI number, offset;
+  MF there;  ///< The surface crosses the cell.
 };
 
-HWY_INLINE CellsOfBricks cells_in_bricks(const BrickGroups& groups, const Candidates& c) {
+HWY_INLINE CellsOfBricks cells_in_bricks(const RayBricks& bricks, const BrickGroups& groups, const Candidates& c, MF active) {
+  const F d;
   const I di;
+  const hn::RebindToUnsigned<I> du;
   const VI x = hn::ConvertTo(di, c.cell.x), y = hn::ConvertTo(di, c.cell.y), z = hn::ConvertTo(di, c.cell.z), seven = hn::Set(di, 7);
-  CellsOfBricks cells;
-  cells.brick = c.group;
+  VI brick = c.group;
   if (groups.shift > 3) {
     const int bits = groups.shift - 3;
     const auto slot = [&](VI v) { return hn::ShiftRight<3>(v); };
     const VI part = hn::Or(hn::Or(hn::ShiftLeftSame(slot(x), 2 * bits), hn::ShiftLeftSame(slot(y), bits)), slot(z));
-    cells.brick = hn::GatherIndex(di, groups.bricks.data(), hn::Add(hn::ShiftLeftSame(c.group, 3 * bits), part));
+    brick = hn::GatherIndex(di, groups.bricks.data(), hn::Add(hn::ShiftLeftSame(c.group, 3 * bits), part));
+    // -1: the surface crosses none of the brick's cells.
+    active = hn::And(active, hn::RebindMask(d, hn::Gt(brick, hn::Set(di, -1))));
   }
+  brick = hn::IfThenElseZero(hn::RebindMask(di, active), brick);
   const VI lx = hn::And(x, seven), ly = hn::And(y, seven), lz = hn::And(z, seven);
-  cells.number = hn::Add(hn::ShiftLeft<9>(cells.brick), hn::Or(hn::Or(hn::ShiftLeft<6>(lx), hn::ShiftLeft<3>(ly)), lz));
+  CellsOfBricks cells;
+  cells.number = hn::Add(hn::ShiftLeft<9>(brick), hn::Or(hn::Or(hn::ShiftLeft<6>(lx), hn::ShiftLeft<3>(ly)), lz));
   const VI row = hn::Add(hn::Mul(lx, hn::Set(di, 81)), hn::Add(hn::Add(hn::ShiftLeft<3>(ly), ly), lz));
-  cells.offset = hn::Add(hn::Mul(cells.brick, hn::Set(di, kBrickBytes)), hn::Add(row, row));
+  const VI bits = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(bricks.crossed.data()), hn::ShiftRight<5>(cells.number));
+  const auto bit = hn::And(hn::Shr(hn::BitCast(du, bits), hn::BitCast(du, hn::And(cells.number, hn::Set(di, 31)))), hn::Set(du, 1u));
+  cells.there = hn::And(active, hn::RebindMask(d, hn::Ne(hn::BitCast(di, bit), hn::Zero(di))));
+  const VI first = hn::GatherIndex(di, bricks.first.data(), brick);
+  cells.offset = hn::IfThenElseZero(hn::RebindMask(di, cells.there), hn::Add(first, hn::Add(row, row)));
   return cells;
-}
-
-/// Lanes of `active` whose cell no smaller brick holds.
-HWY_INLINE MF not_covered(const RayBricks& bricks, VI number, MF active) {
-  const I di;
-  const hn::RebindToUnsigned<I> du;
-  const VI three = hn::Set(di, 3), cell = hn::IfThenElseZero(hn::RebindMask(di, active), number);
-  const auto pair = [&](VI v) { return hn::And(v, three); };
-  // As covered_bit; of the 64 bits of a brick the lower 32 are the first word.
-  const VI bit = hn::Or(hn::Or(hn::ShiftLeft<4>(pair(hn::ShiftRight<7>(cell))), hn::ShiftLeft<2>(pair(hn::ShiftRight<4>(cell)))),
-                        pair(hn::ShiftRight<1>(cell)));
-  const VI word = hn::Add(hn::ShiftLeft<1>(hn::ShiftRight<9>(cell)), hn::ShiftRight<5>(bit));
-  const VI bits = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(bricks.covered.data()), word);
-  const auto held = hn::And(hn::Shr(hn::BitCast(du, bits), hn::BitCast(du, hn::And(bit, hn::Set(di, 31)))), hn::Set(du, 1u));
-  return hn::And(active, hn::RebindMask(F(), hn::Eq(hn::BitCast(di, held), hn::Zero(di))));
 }
 
 /// One cell for each of a packet of waiting rays: hits are noted, the others wait for their next cell where there is one.
@@ -227,12 +222,9 @@ HWY_NOINLINE void advance_packet(const RayBricks& bricks, const BrickGroups& gro
   const V3 from{place(c.origin.x, c.direction.x, c.cell.x), place(c.origin.y, c.direction.y, c.cell.y),
                 place(c.origin.z, c.direction.z, c.cell.z)};
   const V3 step{hn::Mul(length, c.direction.x), hn::Mul(length, c.direction.y), hn::Mul(length, c.direction.z)};
-  const CellsOfBricks at = cells_in_bricks(groups, c);
-  MF there = hn::And(active, hn::RebindMask(d, hn::Gt(at.brick, hn::Set(di, -1))));
-  if (!bricks.covered.empty()) there = not_covered(bricks, at.number, there);
+  const CellsOfBricks at = cells_in_bricks(bricks, groups, c, active);
   VF s = zero;
-  const MF found =
-      first_root(cubic_along(bricks.values.data(), hn::IfThenElseZero(hn::RebindMask(di, there), at.offset), from, step, side), there, s);
+  const MF found = first_root(cubic_along(bricks.values.data(), at.offset, from, step, side), at.there, s);
   if (!hn::AllFalse(d, found)) note(hn::Add(c.near, hn::Mul(s, length)), c.lane, at.number, found, hits);
   active = hn::And(hn::AndNot(found, active), hn::Lt(end, c.far));
   if (hn::AllFalse(d, active)) return;

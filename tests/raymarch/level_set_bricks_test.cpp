@@ -350,20 +350,38 @@ TEST(LevelSetBricks, AreBoundedByTheirSlabs) {
   }
 }
 
-TEST(LevelSetBricks, KeepTheSideOfEveryNode) {
+/// The nodes that a crossed cell has, and those that its stencils read one node farther, of the brick that has the cell or of one beside
+/// it.
+TEST(LevelSetBricks, KeepTheSideOfEveryNodeThatIsRead) {
   const LevelSet level_set = level_set_from_field(cases()[5].field, {.voxel_size = 0.05, .half_width_voxels = 3.0});
   const auto bricks = make_bricks(level_set);
   ASSERT_NE(bricks, nullptr);
   const auto accessor = level_set.data().accessor();
   const auto& bounds = bricks->groups[0].bounds;
+  size_t crossed = 0, uncrossed = 0;
   for (size_t b = 0; b < bounds.size(); ++b) {
-    for (int k = 0; k < 729; ++k) {
-      const nanovdb::Coord node(bounds[b].origin[0] + k / 81, bounds[b].origin[1] + k / 9 % 9, bounds[b].origin[2] + k % 9);
-      const std::int16_t step = bricks->values[b * kBrickStride + static_cast<size_t>(k)];
-      ASSERT_EQ(accessor.getValue(node) < 0.0f, step < 0);
-      ASSERT_NE(step, 0);
+    const auto origin = nanovdb::Coord(bounds[b].origin[0], bounds[b].origin[1], bounds[b].origin[2]);
+    for (int cell = 0; cell < 512; ++cell) {
+      const glm::ivec3 first(cell >> 6, cell >> 3 & 7, cell & 7);
+      int inside = 0;
+      for (int corner = 0; corner < 8; ++corner)
+        inside += accessor.getValue(origin.offsetBy(first.x + (corner >> 2), first.y + (corner >> 1 & 1), first.z + (corner & 1))) < 0.0f;
+      const bool crosses = inside > 0 && inside < 8;
+      ASSERT_EQ(bricks->crosses(b, cell), crosses);
+      (crosses ? crossed : uncrossed) += 1;
+      if (!crosses) continue;
+      for (int k = 0; k < 64; ++k) {
+        const glm::ivec3 step(k / 16 - 1, k / 4 % 4 - 1, k % 4 - 1), node = first + step;
+        const int beside = (step.x < 0 || step.x > 1) + (step.y < 0 || step.y > 1) + (step.z < 0 || step.z > 1);
+        if (beside > 1 || glm::any(glm::lessThan(node, glm::ivec3(0))) || glm::any(glm::greaterThan(node, glm::ivec3(8)))) continue;
+        const std::int16_t value = bricks->value(b, brick_element(node.x, node.y, node.z));
+        ASSERT_EQ(accessor.getValue(origin.offsetBy(node.x, node.y, node.z)) < 0.0f, value < 0);
+        ASSERT_NE(value, 0);
+      }
     }
   }
+  EXPECT_GT(crossed, 1000u);
+  EXPECT_GT(uncrossed, 1000u);
 }
 
 /// Values far from distances: ten times as steep on one side of the world as on the other, and a band cut to pieces.

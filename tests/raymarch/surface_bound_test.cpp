@@ -20,7 +20,7 @@ namespace {
 std::vector<std::int16_t> random_brick(std::mt19937& random) {
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   const double normal[3] = {unit(random), unit(random), unit(random)}, offset = 8.0 * unit(random), noise = random() % 2 == 0 ? 0.0 : 3.0;
-  std::vector<std::int16_t> values(kBrickStride);
+  std::vector<std::int16_t> values(kBrickElements);
   for (int x = 0; x < kBrickNodes; ++x)
     for (int y = 0; y < kBrickNodes; ++y)
       for (int z = 0; z < kBrickNodes; ++z) {

@@ -34,11 +34,6 @@ std::uint8_t touched_faces(const CrossedCells& crossed) {
   return faces;
 }
 
-void inspect(const NodeSteps& steps, Candidate& candidate) {
-  candidate.cells = without_covered(crossed_cells_of(steps), candidate.covered);
-  if (candidate.cells.any) candidate.faces = touched_faces(candidate.cells);
-}
-
 std::vector<Candidate> candidates_of(std::span<const CrossedBlock> crossed) {
   std::vector<Candidate> candidates(crossed.size());
   parallel_parts(crossed.size(), size_t{1024}, [&](const IndexRange<size_t>& range) {
@@ -105,6 +100,8 @@ void find_layers(BrickLayout& layout) {
 
 /// Of a brick over a face: node -1 is node 7 of the one before, node 9 is node 1 of the one behind.
 int node_over(int face) { return face % 2 == 0 ? kBrickCells - 1 : 1; }
+/// And that of both.
+int node_on(int face) { return face % 2 == 0 ? kBrickCells : 0; }
 
 /// What each brick's own stencils read of it, and those of the bricks beside it.
 void find_rows(BrickLayout& layout) {
@@ -117,7 +114,9 @@ void find_rows(BrickLayout& layout) {
       for (int face = 0; face < 6; ++face) {
         const std::int32_t other = layout.beside[i][static_cast<size_t>(face)];
         if (other < 0) continue;
-        const BrickRows read = rows_read_over(layout.crossed[i].cells, face, node_over(face));
+        BrickRows read = rows_read_over(layout.crossed[i].cells, face, node_over(face));
+        // With the face's own nodes, so that cells are kept on both sides of it.
+        if (face < 4) read.add(rows_read_over(layout.crossed[i].cells, face, node_on(face)));
         BrickRows& rows = layout.rows[static_cast<size_t>(other)];
         std::atomic_ref(rows.low).fetch_or(read.low, std::memory_order_relaxed);
         std::atomic_ref(rows.high).fetch_or(read.high, std::memory_order_relaxed);
@@ -277,10 +276,17 @@ BrickLayout lay_out_bricks(const NodeReader& nodes, std::span<const BrickPlace> 
   parallel_parts(places.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
     NodeSteps steps;
     for (size_t i = range.begin(); i < range.end(); ++i) {
-      candidates[i].origin = places[i].origin;
-      candidates[i].covered = places[i].covered;
-      nodes.load(places[i].origin, steps);
-      inspect(steps, candidates[i]);
+      Candidate& candidate = candidates[i];
+      candidate.origin = places[i].origin;
+      candidate.covered = places[i].covered;
+      candidate.place = static_cast<std::uint32_t>(i);
+      if (places[i].crossed) {
+        candidate.cells = *places[i].crossed;
+      } else {
+        nodes.load(candidate, steps);
+        candidate.cells = without_covered(crossed_cells_of(steps), candidate.covered);
+      }
+      if (candidate.cells.any) candidate.faces = touched_faces(candidate.cells);
     }
   });
   return lay_out(candidates);

@@ -41,6 +41,7 @@ CrossedCells without_covered(CrossedCells crossed, std::uint64_t covered);
 struct Candidate {
   glm::ivec3 origin{0};
   std::uint64_t covered = 0;  ///< What smaller bricks hold of it.
+  std::uint32_t place = 0;    ///< Its number among the places that were asked for, where there are such.
   std::uint8_t faces = 0;
   float largest = 0.0f;  ///< |value| at the nodes of crossed cells, of a grid's.
   CrossedCells cells{};
@@ -82,12 +83,13 @@ BrickLayout lay_out_bricks(const LevelSetData& data);
 /// Nodes that are in no grid, as the steps that bricks hold (see quantised()). Copied for each thread that asks for single ones.
 struct NodeReader {
   const void* state = nullptr;
-  void (*load_brick)(const void* state, const glm::ivec3& origin, NodeSteps& steps) = nullptr;  ///< In the order of load_nodes.
+  /// In the order of load_nodes. `place`: the brick's number among the places that bricks are made of.
+  void (*load_brick)(const void* state, size_t place, const glm::ivec3& origin, NodeSteps& steps) = nullptr;
   /// `last` is the reader's to remember something by.
   std::int16_t (*node_steps)(const void* state, const glm::ivec3& node, const void*& last) = nullptr;
   mutable const void* last = nullptr;  ///< Of one thread.
 
-  void load(const glm::ivec3& origin, NodeSteps& steps) const { load_brick(state, origin, steps); }
+  void load(const Candidate& brick, NodeSteps& steps) const { load_brick(state, brick.place, brick.origin, steps); }
   std::int16_t steps(const glm::ivec3& node) const { return node_steps(state, node, last); }
 };
 
@@ -95,6 +97,7 @@ struct NodeReader {
 struct BrickPlace {
   glm::ivec3 origin{0};
   std::uint64_t covered = 0;
+  const CrossedCells* crossed = nullptr;  ///< Of the other cells, where it is known already; else the nodes tell it.
 };
 
 /// Of the blocks of cells those that the surface crosses, in parallel.

@@ -53,6 +53,17 @@ BrickRows rows_read_over(const CrossedCells& crossed, int face, int at) {
   return rows;
 }
 
+std::array<std::uint64_t, 8> cells_within(const BrickRows& rows) {
+  std::array<std::uint64_t, 8> cells{};
+  for (int x = 0; x < 8; ++x)
+    for (int y = 0; y < 8; ++y) {
+      const int row = 9 * x + y;
+      if (rows.has(row) && rows.has(row + 1) && rows.has(row + 9) && rows.has(row + 10))
+        cells[static_cast<size_t>(x)] |= std::uint64_t{0xff} << 8 * y;
+    }
+  return cells;
+}
+
 std::int64_t RowPacking::place(const BrickRows& rows) {
   if (!rows.any()) return 0;
   // From its first row on.

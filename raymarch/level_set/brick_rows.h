@@ -2,6 +2,7 @@
 // Internal: which rows of nodes rays read of a brick, and where they lie. A surface passes few of a brick's rows: bricks lie in each
 // other's gaps.
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -26,6 +27,9 @@ struct BrickRows {
   }
 };
 inline constexpr int kBrickRows = 81;
+
+/// Cells all of whose nodes lie in the rows. (x, y, z) is bit 64 x + 8 y + z, of eight words.
+std::array<std::uint64_t, 8> cells_within(const BrickRows& rows);
 
 /// Of a brick what its crossed cells and the stencils of their gradients read.
 BrickRows rows_read(const CrossedCells& crossed);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 #include <limits>
 
 #include "raymarch/level_set/brick_layout.h"
@@ -15,10 +14,20 @@ namespace {
 
 size_t count_of(const RayBricks& bricks) { return bricks.neighbors.size(); }
 
+/// Of the cells that are kept those with nodes on either side.
 CrossedCells crossed_in(const RayBricks& bricks, size_t brick) {
-  CrossedCells crossed{.cells = {}, .any = true};
-  static_assert(sizeof crossed.cells == 8 * sizeof(std::uint64_t));
-  std::memcpy(crossed.cells, &bricks.crossed[8 * brick], sizeof crossed.cells);
+  CrossedCells crossed;
+  for (int cell = 0; cell < 512; ++cell) {
+    if (!bricks.keeps(brick, cell)) continue;
+    int inside = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const int x = (cell >> 6) + (corner >> 2), y = (cell >> 3 & 7) + (corner >> 1 & 1), z = (cell & 7) + (corner & 1);
+      inside += bricks.value(brick, brick_element(x, y, z)) < 0 ? 1 : 0;
+    }
+    if (inside == 0 || inside == 8) continue;
+    crossed.cells[cell >> 6][cell >> 3 & 7] = static_cast<std::uint8_t>(crossed.cells[cell >> 6][cell >> 3 & 7] | 1 << (cell & 7));
+    crossed.any = true;
+  }
   return crossed;
 }
 
@@ -58,7 +67,8 @@ std::string header_of(const RayBricks& bricks) {
 
 int crossed_cells_in(const RayBricks& bricks, size_t brick) {
   int count = 0;
-  for (size_t word = 8 * brick; word < 8 * (brick + 1); ++word) count += std::popcount(bricks.crossed[word]);
+  for (const auto& column : crossed_in(bricks, brick).cells)
+    for (const std::uint8_t bits : column) count += std::popcount(bits);
   return count;
 }
 

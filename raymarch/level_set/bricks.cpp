@@ -77,6 +77,19 @@ float scale_for(const BrickLayout& layout, float background) {
   return least * scale >= static_cast<float>(kFewestSteps) ? scale : 0.0f;
 }
 
+/// That no smaller bricks hold. Bits as of cells_within().
+std::array<std::uint64_t, 8> open_cells(std::uint64_t covered) {
+  std::array<std::uint64_t, 8> open;
+  open.fill(~std::uint64_t{0});
+  if (covered == 0) return open;
+  CrossedCells all{.cells = {}, .any = true};
+  std::memset(all.cells, 0xff, sizeof all.cells);
+  const CrossedCells left = without_covered(all, covered);
+  static_assert(sizeof left.cells == sizeof open);
+  std::memcpy(open.data(), left.cells, sizeof left.cells);
+  return open;
+}
+
 /// The rows that are read.
 void fill_rows(const NodeSteps& steps, const BrickRows& rows, std::int16_t* to) {
   for (int row = 0; row < kBrickRows; ++row)
@@ -108,11 +121,11 @@ BrickShapes fill(const MakeReader& reader, const BrickLayout& layout, RayBricks&
     NodeSteps steps;
     for (size_t i = range.begin(); i < range.end(); ++i) {
       const Candidate& candidate = layout.crossed[i];
-      nodes.load(candidate.origin, steps);
+      nodes.load(candidate, steps);
       bricks.first[i] = static_cast<std::int32_t>(layout.first_row[i] * kBrickNodes * static_cast<std::int64_t>(sizeof(std::int16_t)));
       fill_rows(steps, layout.rows[i], bricks.values.data() + layout.first_row[i] * kBrickNodes);
-      static_assert(sizeof candidate.cells.cells == 8 * sizeof(std::uint64_t));
-      std::memcpy(&bricks.crossed[8 * i], candidate.cells.cells, sizeof candidate.cells.cells);
+      const std::array<std::uint64_t, 8> cells = cells_within(layout.rows[i]), open = open_cells(candidate.covered);
+      for (size_t word = 0; word < 8; ++word) bricks.kept[8 * i + word] = cells[word] & open[word];
       shapes[i] = shape_of(steps.data(), candidate.cells);  // quantised() keeps signs
       const BrickInCube whole{glm::ivec3(0), steps.data(), &shapes[i]};
       bricks.groups[0].bounds[i] = bound_surface(candidate.origin, std::span(&whole, 1));
@@ -136,7 +149,7 @@ void make_from(const MakeReader& reader, const BrickLayout& layout, float scale,
   bricks.groups.push_back({.shift = 3, .bounds = std::vector<SurfaceBound>(layout.crossed.size()), .bricks = {}});
   bricks.neighbors.resize(layout.crossed.size());
   bricks.first.resize(layout.crossed.size());
-  bricks.crossed.resize(8 * layout.crossed.size());
+  bricks.kept.resize(8 * layout.crossed.size());
   bricks.values.resize(static_cast<size_t>(layout.row_count * kBrickNodes) + kReadBeyond);
   const BrickShapes shapes = fill(reader, layout, bricks);
   for (const int shift : {4, 5}) bricks.groups.push_back(group_bricks(layout, shapes, bricks, shift));
@@ -153,9 +166,9 @@ void make_from(const MakeReader& reader, const BrickLayout& layout, float scale,
 struct GridReader {
   Accessor accessor;
   float steps_per_unit = 0.0f;
-  void load(const glm::ivec3& origin, NodeSteps& steps) const {
+  void load(const Candidate& brick, NodeSteps& steps) const {
     NodeValues values;
-    load_nodes(accessor, origin, values);
+    load_nodes(accessor, brick.origin, values);
     quantise(values, steps_per_unit, steps.data());
   }
   std::int16_t steps(const glm::ivec3& node) const {
@@ -177,7 +190,7 @@ double ms_since(std::chrono::steady_clock::time_point start) {
 
 std::int64_t RayBricks::bytes() const {
   size_t sum = neighbors.size() * sizeof(BrickNeighbors) + values.size() * sizeof(std::int16_t) + first.size() * sizeof(std::int32_t) +
-               crossed.size() * sizeof(std::uint64_t);
+               kept.size() * sizeof(std::uint64_t);
   for (const BrickGroups& of : groups) sum += of.bounds.size() * sizeof(SurfaceBound) + of.bricks.size() * sizeof(std::int32_t);
   return static_cast<std::int64_t>(sum) + spline.bytes();
 }

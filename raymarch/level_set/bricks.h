@@ -67,9 +67,10 @@ struct RayBricks {
   /// For each crossed brick where its first node's value lies or would lie, in bytes. The others lie from there on as brick_element() has
   /// them.
   std::vector<std::int32_t> first{};
-  /// For each crossed brick its cells in which the surface is: that it crosses and no smaller brick holds. Eight words, bits as cells are
-  /// numbered in BrickHits. Nothing else of its values is kept.
-  std::vector<std::uint64_t> crossed{};
+  /// For each crossed brick the cells that rays look into: whose values are all kept, and that no smaller brick holds. Among them are those
+  /// that the surface crosses and those beside them, in which a ray may find it by rounding. Eight words, bits as cells are numbered in
+  /// BrickHits.
+  std::vector<std::uint64_t> kept{};
   SplineBricks spline{};          ///< Of the crossed bricks; empty where nobody asked for it.
   glm::ivec3 lower{0}, upper{0};  ///< Around the crossed cells, index coordinates.
   double world_per_step = 0.0;    ///< What one step of a value stands for.
@@ -79,8 +80,8 @@ struct RayBricks {
   double prepare_ms = 0.0;
 
   std::int64_t bytes() const;
-  bool crosses(size_t brick, int cell) const { return (crossed[8 * brick + static_cast<size_t>(cell >> 6)] >> (cell & 63) & 1) != 0; }
-  /// Of a node of a crossed cell, or one that stencils of these read.
+  bool keeps(size_t brick, int cell) const { return (kept[8 * brick + static_cast<size_t>(cell >> 6)] >> (cell & 63) & 1) != 0; }
+  /// Of a node of a kept cell.
   std::int16_t value(size_t brick, int element) const { return values[static_cast<size_t>(first[brick] / 2 + element)]; }
 };
 

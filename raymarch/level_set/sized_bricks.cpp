@@ -9,7 +9,7 @@
 namespace limn {
 namespace {
 
-/// The interpolant's sign at a place (index coordinates) in a cell that the surface crosses; nothing elsewhere.
+/// The interpolant's sign at a place (index coordinates) in a cell that is kept; nothing elsewhere.
 std::optional<bool> inside_brick(const RayBricks& bricks, const glm::dvec3& place) {
   const glm::dvec3 node = glm::floor(place), local = place - node;
   const glm::ivec3 cell(node), origin = cell & ~7;
@@ -20,7 +20,7 @@ std::optional<bool> inside_brick(const RayBricks& bricks, const glm::dvec3& plac
   if (found == bounds.end() || key(*found) != key_of(origin)) return std::nullopt;
   const glm::ivec3 in_brick = cell - origin;
   const auto brick = static_cast<size_t>(found - bounds.begin());
-  if (!bricks.crosses(brick, in_brick.x << 6 | in_brick.y << 3 | in_brick.z)) return std::nullopt;
+  if (!bricks.keeps(brick, in_brick.x << 6 | in_brick.y << 3 | in_brick.z)) return std::nullopt;
   double sum = 0.0;
   for (int k = 0; k < 8; ++k) {
     const glm::ivec3 side(k & 1, k >> 1 & 1, k >> 2), at = in_brick + side;

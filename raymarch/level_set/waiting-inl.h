@@ -173,7 +173,7 @@ HWY_INLINE void note(VF t, VI lane, VI cell, MF found, BrickHits& hits) {
 /// A packet's cells: numbers as in BrickHits, and where their values lie.
 struct CellsOfBricks {
   VI number, offset;
-  MF there;  ///< The surface crosses the cell.
+  MF there;  ///< The cell is kept.
 };
 
 HWY_INLINE CellsOfBricks cells_in_bricks(const RayBricks& bricks, const BrickGroups& groups, const Candidates& c, MF active) {
@@ -195,7 +195,7 @@ HWY_INLINE CellsOfBricks cells_in_bricks(const RayBricks& bricks, const BrickGro
   CellsOfBricks cells;
   cells.number = hn::Add(hn::ShiftLeft<9>(brick), hn::Or(hn::Or(hn::ShiftLeft<6>(lx), hn::ShiftLeft<3>(ly)), lz));
   const VI row = hn::Add(hn::Mul(lx, hn::Set(di, 81)), hn::Add(hn::Add(hn::ShiftLeft<3>(ly), ly), lz));
-  const VI bits = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(bricks.crossed.data()), hn::ShiftRight<5>(cells.number));
+  const VI bits = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(bricks.kept.data()), hn::ShiftRight<5>(cells.number));
   const auto bit = hn::And(hn::Shr(hn::BitCast(du, bits), hn::BitCast(du, hn::And(cells.number, hn::Set(di, 31)))), hn::Set(du, 1u));
   cells.there = hn::And(active, hn::RebindMask(d, hn::Ne(hn::BitCast(di, bit), hn::Zero(di))));
   const VI first = hn::GatherIndex(di, bricks.first.data(), brick);

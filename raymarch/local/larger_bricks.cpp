@@ -54,7 +54,7 @@ Larger larger_of(const LevelNodes& nodes, int step, const std::vector<LocalBrick
   parallel_parts(bricks.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
     NodeSteps steps;
     for (size_t i = range.begin(); i < range.end(); ++i) {
-      load_brick(nodes, 8 * bricks[i].place, steps);
+      load_brick(nodes, i, steps);
       larger.open[i] = ~bricks[i].covered;
       larger.blocks[i] = surface_blocks(steps, static_cast<float>(kNear_voxels * h) * nodes.steps_per_unit);
     }

@@ -18,13 +18,14 @@ void evaluate_curvatures(const void* opaque, std::span<const SurfacePoint> point
   for (size_t i = 0; i < points.size(); ++i) curvatures[i] = facing(curvature_of_jet(evaluator.jet(points[i].position)), points[i].normal);
 }
 
-std::shared_ptr<const RayBricks> bricks_of_level(const LevelNodes& nodes, const LocalChoice& choice, size_t level, double half_width_voxels,
-                                                 BrickGradient gradient) {
+/// `origin`: of the lattices, in the space of the surface.
+std::shared_ptr<const RayBricks> bricks_of_level(const LevelNodes& nodes, const LocalChoice& choice, size_t level, const glm::dvec3& origin,
+                                                 double half_width_voxels, BrickGradient gradient) {
   if (nodes.blocks.empty()) return nullptr;
   std::vector<BrickPlace> places;
-  for (const LocalBrick& brick : choice.levels[level]) places.push_back({8 * brick.place, brick.covered});
+  for (const LocalBrick& brick : choice.levels[level]) places.push_back({8 * brick.place, brick.covered, &nodes.crossed[places.size()]});
   const double h = choice.voxel_of(level);
-  return bricks_of_size(nodes.reader(), places, {h, half_width_voxels, nodes.steps_per_unit, {glm::dmat3(h), choice.origin}}, gradient,
+  return bricks_of_size(nodes.reader(), places, {h, half_width_voxels, nodes.steps_per_unit, {glm::dmat3(h), origin}}, gradient,
                         [&] { return level_set_of(nodes, choice, level, half_width_voxels, "surface"); });
 }
 
@@ -37,17 +38,17 @@ Surface surface_of(const SurfacePart& whole, const LocalBrickSettings& settings,
   };
   state->gradient = brick_gradient(*settings.gradient);
   const double half_width_voxels = settings.half_width_voxels;
-  LocalChoice choice = choose_bricks(whole, settings);
-  std::vector<LevelNodes> levels = sample_bricks(choice, *settings.gradient, half_width_voxels);
-  choice.origin += part_origin;
+  const LocalChoice choice = choose_bricks(whole, settings);
   Surface surface;
-  for (size_t level = 0; level < levels.size(); ++level) {
-    surface.info.voxels += levels[level].known();
-    if (auto bricks = bricks_of_level(levels[level], choice, level, half_width_voxels, state->gradient)) {
-      if (surface.info.voxel_size == 0.0) surface.info.voxel_size = choice.voxel_of(level);
-      add_size(bricks, *state, surface.info);
-    }
-    levels[level] = {};
+  std::vector<std::shared_ptr<const RayBricks>> bricks(choice.levels.size());
+  sample_bricks(choice, *settings.gradient, half_width_voxels, [&](size_t level, const LevelNodes& nodes) {
+    surface.info.voxels += nodes.known();
+    bricks[level] = bricks_of_level(nodes, choice, level, choice.origin + part_origin, half_width_voxels, state->gradient);
+  });
+  for (size_t level = 0; level < bricks.size(); ++level) {
+    if (!bricks[level]) continue;
+    if (surface.info.voxel_size == 0.0) surface.info.voxel_size = choice.voxel_of(level);
+    add_size(bricks[level], *state, surface.info);
   }
   if (state->sizes.empty())
     throw InputError({.file = {},

@@ -11,17 +11,21 @@
 namespace limn {
 namespace {
 
-NodeBlock& block_at(LevelNodes& nodes, const glm::ivec3& origin, const SurfacePart& part) {
+size_t block_at(LevelNodes& nodes, const glm::ivec3& origin, const SurfacePart& part) {
   const auto [number, is_new] = nodes.at.add(key_of(origin));
-  return is_new ? nodes.blocks.add(origin, part) : nodes.blocks[number];
+  if (is_new) nodes.blocks.add(origin, part);
+  return number;
 }
 
 /// The 9^3 nodes of a brick: all of its own block, and the first layers of those behind.
 void want_brick(const LocalBrick& brick, LevelNodes& nodes) {
   constexpr std::uint64_t kAll = ~std::uint64_t{0}, kFirstRow = 0xff, kFirstColumn = 0x0101010101010101;
-  for (int corner = 0; corner < 8; ++corner) {
+  std::array<std::uint32_t, 8>& numbers = nodes.of_brick.emplace_back();
+  for (size_t corner = 0; corner < 8; ++corner) {
     const glm::ivec3 step(corner & 1, corner >> 1 & 1, corner >> 2);
-    NodeBlock& block = block_at(nodes, 8 * (brick.place + step), brick.part);
+    const size_t number = block_at(nodes, 8 * (brick.place + step), brick.part);
+    numbers[corner] = static_cast<std::uint32_t>(number);
+    NodeBlock& block = nodes.blocks[number];
     const std::uint64_t bits = (step.y ? kFirstRow : kAll) & (step.z ? kFirstColumn : kAll);
     for (size_t x = 0; x < (step.x ? 1 : 8); ++x) block.wanted[x] |= bits;
   }
@@ -57,40 +61,40 @@ void want_read(const LocalBrick& brick, const ReadNodes& read, LevelNodes& nodes
         const glm::ivec3 step(x >> 3, y >> 3, z - 1);
         const int at = 9 * (step.x + 1) + 3 * (step.y + 1) + z;
         NodeBlock*& block = blocks[static_cast<size_t>(at)];
-        if (!block) block = &block_at(nodes, 8 * (brick.place + step), brick.part);
+        if (!block) block = &nodes.blocks[block_at(nodes, 8 * (brick.place + step), brick.part)];
         block->wanted[static_cast<size_t>(x & 7)] |= row << 8 * (y & 7);
       }
     }
 }
 
-/// What the stencils of crossed cells read beyond their brick.
+/// Which cells of each brick the surface crosses, and what their stencils read beyond it.
 void want_stencils(const std::vector<LocalBrick>& bricks, const Stencil& stencil, LevelNodes& nodes) {
   // So many at once stay in the cache.
   constexpr size_t kAtOnce = 1024;
   std::vector<ReadNodes> read(std::min(bricks.size(), kAtOnce));
-  std::vector<std::uint8_t> crosses(read.size());
+  nodes.crossed.resize(bricks.size());
   for (size_t first = 0; first < bricks.size(); first += kAtOnce) {
     const size_t count = std::min(bricks.size() - first, kAtOnce);
     parallel_parts(count, size_t{64}, [&](const IndexRange<size_t>& range) {
       NodeSteps steps;
       for (size_t i = range.begin(); i < range.end(); ++i) {
-        load_brick(nodes, 8 * bricks[first + i].place, steps);
-        const CrossedCells crossed = without_covered(crossed_cells_of(steps), bricks[first + i].covered);
-        crosses[i] = crossed.any;
+        load_brick(nodes, first + i, steps);
+        CrossedCells& crossed = nodes.crossed[first + i];
+        crossed = without_covered(crossed_cells_of(steps), bricks[first + i].covered);
         if (crossed.any) read[i] = nodes_read(crossed, stencil);
       }
     });
     for (size_t i = 0; i < count; ++i)
-      if (crosses[i]) want_read(bricks[first + i], read[i], nodes);
+      if (nodes.crossed[first + i].any) want_read(bricks[first + i], read[i], nodes);
   }
 }
 
 }  // namespace
 
-void load_brick(const LevelNodes& nodes, const glm::ivec3& origin, NodeSteps& steps) {
-  for (int corner = 0; corner < 8; ++corner) {
+void load_brick(const LevelNodes& nodes, size_t brick, NodeSteps& steps) {
+  for (size_t corner = 0; corner < 8; ++corner) {
     const glm::ivec3 step(corner & 1, corner >> 1 & 1, corner >> 2);
-    const std::int16_t* const from = nodes.blocks[nodes.at.find(key_of(origin + 8 * step))].steps.data();
+    const std::int16_t* const from = nodes.blocks[nodes.of_brick[brick][corner]].steps.data();
     for (int x = 0; x < (step.x ? 1 : 8); ++x)
       for (int y = 0; y < (step.y ? 1 : 8); ++y) {
         std::int16_t* const to = &steps[static_cast<size_t>(brick_element(8 * step.x + x, 8 * step.y + y, 8 * step.z))];
@@ -122,36 +126,48 @@ std::int64_t LevelNodes::known() const {
 }
 
 NodeReader LevelNodes::reader() const {
-  return {
-      this,
-      [](const void* of, const glm::ivec3& origin, NodeSteps& steps) { load_brick(*static_cast<const LevelNodes*>(of), origin, steps); },
-      [](const void* of, const glm::ivec3& node, const void*& last) {
-        const auto* block = static_cast<const NodeBlock*>(last);
-        static_cast<const LevelNodes*>(of)->find(block_of(node), block);
-        last = block;
-        const size_t n = place_in_block(node);
-        return block && block->is_known(n) ? block->steps[n] : std::numeric_limits<std::int16_t>::max();
-      }};
+  return {this,
+          [](const void* of, size_t brick, const glm::ivec3&, NodeSteps& steps) {
+            load_brick(*static_cast<const LevelNodes*>(of), brick, steps);
+          },
+          [](const void* of, const glm::ivec3& node, const void*& last) {
+            const auto* block = static_cast<const NodeBlock*>(last);
+            static_cast<const LevelNodes*>(of)->find(block_of(node), block);
+            last = block;
+            const size_t n = place_in_block(node);
+            return block && block->is_known(n) ? block->steps[n] : std::numeric_limits<std::int16_t>::max();
+          }};
 }
 
-std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientDescriptor& gradient, double half_width_voxels) {
-  std::vector<LevelNodes> levels(choice.levels.size());
-  for (size_t level = levels.size(); level-- > 0;) {
+void sample_bricks(const LocalChoice& choice, const GradientDescriptor& gradient, double half_width_voxels,
+                   const std::function<void(size_t level, LevelNodes nodes)>& take) {
+  LevelNodes before;  // of the next larger level
+  for (size_t level = choice.levels.size(); level-- > 0;) {
     const std::vector<LocalBrick>& bricks = choice.levels[level];
-    LevelNodes& nodes = levels[level];
+    const bool has_larger = level + 1 < choice.levels.size();
+    LevelNodes nodes;
     const double h = choice.voxel_of(level), half_width = half_width_voxels * h;
     nodes.steps_per_unit = static_cast<float>(32767.0 / half_width);
     Larger larger;
-    if (level + 1 < levels.size()) larger = larger_of(levels[level + 1], choice.step(level), choice.levels[level + 1], h);
+    if (has_larger) larger = larger_of(before, choice.step(level), choice.levels[level + 1], h);
     NodeMeasure measure{.choice = choice, .lattice = {h, half_width, choice.doublings[level] == 0}, .steps_per_unit = nodes.steps_per_unit};
-    if (larger.nodes && !choice.levels[level + 1].empty()) measure.larger = &larger;
+    if (has_larger && !choice.levels[level + 1].empty()) measure.larger = &larger;
+    nodes.of_brick.reserve(bricks.size());
     for (const LocalBrick& brick : bricks) want_brick(brick, nodes);
     measure_wanted(nodes.blocks, measure);
     // Stencils read the surface's own values beyond the brick: they are nearer to the surface's normals than a larger brick's interpolant.
     want_stencils(bricks, gradient.stencil, nodes);
     measure.larger = nullptr;
     measure_wanted(nodes.blocks, measure);
+    if (has_larger) take(level + 1, std::move(before));
+    before = std::move(nodes);
   }
+  take(0, std::move(before));
+}
+
+std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientDescriptor& gradient, double half_width_voxels) {
+  std::vector<LevelNodes> levels(choice.levels.size());
+  sample_bricks(choice, gradient, half_width_voxels, [&](size_t level, LevelNodes nodes) { levels[level] = std::move(nodes); });
   return levels;
 }
 

@@ -22,6 +22,9 @@ struct LevelNodes {
   NodeBlocks blocks{};
   KeyNumbers at{};              ///< By key_of.
   float steps_per_unit = 0.0f;  ///< Values are whole numbers of steps, none of them 0.
+  /// For each brick of the level the numbers of the blocks that hold its nodes: its own, and at [k] the one behind it along the axes of k.
+  std::vector<std::array<std::uint32_t, 8>> of_brick{};
+  std::vector<CrossedCells> crossed{};  ///< For each brick its cells that the surface crosses and no smaller brick holds.
 
   float value_of(std::int16_t steps) const { return static_cast<float>(steps) / steps_per_unit; }
   /// Of a node that is known.
@@ -32,12 +35,16 @@ struct LevelNodes {
   NodeReader reader() const;  ///< Valid as long as the nodes are. Nodes that are not known are far outside.
 };
 
-/// Of a brick whose nodes are known.
-void load_brick(const LevelNodes& nodes, const glm::ivec3& origin, NodeSteps& steps);
+/// Of a brick of the level, whose nodes are known.
+void load_brick(const LevelNodes& nodes, size_t brick, NodeSteps& steps);
 
 /// Samples the surface at the nodes of the chosen bricks and at those that the gradient's stencils read beside them, and nowhere else; from
 /// the largest voxels to the smallest. A node that lies on open cells of a larger brick takes that brick's interpolant, where its surface
 /// is near, and else its sign: on the face between two sizes both sides have the same surface, without a crack.
+/// `take` is called for each level as soon as no smaller one asks for its nodes.
+void sample_bricks(const LocalChoice& choice, const GradientDescriptor& gradient, double half_width_voxels,
+                   const std::function<void(size_t level, LevelNodes nodes)>& take);
+/// The same, all at once.
 std::vector<LevelNodes> sample_bricks(const LocalChoice& choice, const GradientDescriptor& gradient, double half_width_voxels);
 
 /// What the grid of a file has besides.

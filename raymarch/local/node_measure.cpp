@@ -51,12 +51,30 @@ struct AskedNodes {
   void add(std::uint64_t bits, size_t word, const NodePlaces& places) {
     for (size_t y = 0; y < 8; ++y, bits >>= 8) {
       const auto first = static_cast<std::uint16_t>(word << 6 | y << 3);
-      for (std::uint32_t row = bits & 0xff; row != 0; row &= row - 1) {
+      std::uint32_t row = bits & 0xff;
+      if (row == 0xff) {
+        add_row(first, {places.at[0][word], places.at[1][y]}, places.at[2]);
+        continue;
+      }
+      for (; row != 0; row &= row - 1) {
         const auto z = static_cast<size_t>(std::countr_zero(row));
         numbers[points.count] = static_cast<std::uint16_t>(first + z);
         points.add({places.at[0][word], places.at[1][y], places.at[2][z]});
       }
     }
+  }
+
+ private:
+  /// All eight.
+  void add_row(std::uint16_t first, const glm::dvec2& at, const double (&along_z)[8]) {
+    const size_t from = points.count;
+    for (size_t z = 0; z < 8; ++z) {
+      points.at[0][from + z] = at.x;
+      points.at[1][from + z] = at.y;
+      points.at[2][from + z] = along_z[z];
+      numbers[from + z] = static_cast<std::uint16_t>(first + z);
+    }
+    points.count += 8;
   }
 };
 

@@ -45,7 +45,8 @@ std::vector<std::vector<BrickPlace>> places_of(const FileGrids& volume, const st
   for (size_t k = 0; k < volume.said.size(); ++k) {
     std::unordered_map<std::uint64_t, size_t> at;
     places.emplace_back();
-    for (const glm::ivec3& place : volume.said[k].bricks) at.emplace(key_of(8 * place), at.size()), places.back().push_back({8 * place, 0});
+    for (const glm::ivec3& place : volume.said[k].bricks)
+      at.emplace(key_of(8 * place), at.size()), places.back().push_back({.origin = 8 * place});
     if (k == 0) continue;
     const int step = doublings[k] - doublings[k - 1];
     if (step != 1 && step != 2) refuse(volume.grids[k], file, "its voxels are not two or four times those of the size before");
@@ -65,7 +66,7 @@ struct FileNodes {
 
 NodeReader reader_of(const FileNodes& nodes) {
   return {&nodes,
-          [](const void* of, const glm::ivec3& origin, NodeSteps& steps) {
+          [](const void* of, size_t, const glm::ivec3& origin, NodeSteps& steps) {
             const auto& [data, steps_per_unit] = *static_cast<const FileNodes*>(of);
             NodeValues values;
             load_nodes(data.accessor(), origin, values);

@@ -100,6 +100,26 @@ TEST(BrickRows, OverAFaceAreThoseThatStencilsReadThere) {
   }
 }
 
+TEST(BrickRows, HoldTheCellsWhoseNodesTheyHold) {
+  const std::uint64_t seed = random_seed();
+  std::mt19937_64 random(seed);
+  for (int draw = 0; draw < 50; ++draw) {
+    const CrossedCells crossed = plane_cells(random_normal(random), random);
+    const BrickRows rows = rows_read(crossed);
+    const std::array<std::uint64_t, 8> cells = cells_within(rows);
+    for (int cell = 0; cell < 512; ++cell) {
+      const int x = cell >> 6, y = cell >> 3 & 7;
+      const bool held = rows.has(9 * x + y) && rows.has(9 * (x + 1) + y) && rows.has(9 * x + y + 1) && rows.has(9 * (x + 1) + y + 1);
+      ASSERT_EQ((cells[static_cast<size_t>(x)] >> (cell & 63) & 1) != 0, held) << cell << " seed " << seed;
+      // Among them are those that are crossed, and those that share a face with one.
+      for (const auto& [dx, dy] : {std::pair{0, 0}, {-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
+        if (x + dx < 0 || x + dx > 7 || y + dy < 0 || y + dy > 7) continue;
+        ASSERT_TRUE(held || crossed.cells[x + dx][y + dy] == 0) << cell << " seed " << seed;
+      }
+    }
+  }
+}
+
 /// Bricks beside each other have nearly the same normal; any sets of rows must do.
 TEST(BrickRows, LieInEachOthersGaps) {
   const std::uint64_t seed = random_seed();

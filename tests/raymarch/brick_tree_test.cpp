@@ -34,7 +34,7 @@ struct BentPlane {
     const double plane = node.z - (face + height + slope * (node.x - 6.0) + 0.3 * (node.y - y));
     return static_cast<float>(node.z < face ? plane + 0.002 * (node.x - 4.0) : plane);
   }
-  static void read(const void* self, const glm::ivec3& origin, NodeSteps& steps) {
+  static void read(const void* self, size_t, const glm::ivec3& origin, NodeSteps& steps) {
     for (int k = 0; k < 729; ++k)
       steps[static_cast<size_t>(brick_element(k / 81, k / 9 % 9, k % 9))] =
           quantised(static_cast<const BentPlane*>(self)->value_at(origin + glm::ivec3(k / 81, k / 9 % 9, k % 9)), kStepsPerUnit);

@@ -20,7 +20,7 @@ constexpr float kStepsPerUnit = 1000.0f;
 
 NodeReader plane_nodes() {
   return {nullptr,
-          [](const void*, const glm::ivec3& origin, NodeSteps& steps) {
+          [](const void*, size_t, const glm::ivec3& origin, NodeSteps& steps) {
             for (int k = 0; k < 729; ++k)
               steps[static_cast<size_t>(brick_element(k / 81, k / 9 % 9, k % 9))] =
                   quantised(value_at(origin + glm::ivec3(k / 81, k / 9 % 9, k % 9)), kStepsPerUnit);

@@ -95,7 +95,7 @@ void LargerBeside::load_values() {
         const NodeBlock* const block = larger_.nodes->find(block_of(node), last);
         const size_t n = place_in_block(node);
         // Nobody asks for what no brick has.
-        values_[at(node)] = block && block->is_known(n) ? static_cast<double>(larger_.nodes->value_of(block->steps[n])) : 0.0;
+        values_[at(node)] = block && block->is_known(n) ? static_cast<double>(larger_.nodes->value_of(block->step(n))) : 0.0;
       }
   is_loaded_ = true;
 }

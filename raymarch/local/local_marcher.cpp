@@ -105,7 +105,7 @@ bool has_both_signs(const LevelNodes& nodes) {
   for (size_t i = 0; i < nodes.blocks.size(); ++i) {
     const NodeBlock& block = nodes.blocks[i];
     for (size_t n = 0; n < 512; ++n)
-      if (block.is_known(n)) (block.steps[n] < 0 ? inside : outside) = true;
+      if (block.is_known(n)) (block.step(n) < 0 ? inside : outside) = true;
   }
   return inside && outside;
 }

@@ -67,22 +67,28 @@ void want_read(const LocalBrick& brick, const ReadNodes& read, LevelNodes& nodes
     }
 }
 
-/// Which cells of each brick the surface crosses, and what their stencils read beyond it.
+/// Which cells of each brick the surface crosses.
+void find_crossed(const std::vector<LocalBrick>& bricks, LevelNodes& nodes) {
+  nodes.crossed.resize(bricks.size());
+  parallel_parts(bricks.size(), size_t{64}, [&](const IndexRange<size_t>& range) {
+    NodeSteps steps;
+    for (size_t i = range.begin(); i < range.end(); ++i) {
+      load_brick(nodes, i, steps);
+      nodes.crossed[i] = without_covered(crossed_cells_of(steps), bricks[i].covered);
+    }
+  });
+}
+
+/// What the stencils of crossed cells read beyond their brick.
 void want_stencils(const std::vector<LocalBrick>& bricks, const Stencil& stencil, LevelNodes& nodes) {
   // So many at once stay in the cache.
   constexpr size_t kAtOnce = 1024;
   std::vector<ReadNodes> read(std::min(bricks.size(), kAtOnce));
-  nodes.crossed.resize(bricks.size());
   for (size_t first = 0; first < bricks.size(); first += kAtOnce) {
     const size_t count = std::min(bricks.size() - first, kAtOnce);
     parallel_parts(count, size_t{64}, [&](const IndexRange<size_t>& range) {
-      NodeSteps steps;
-      for (size_t i = range.begin(); i < range.end(); ++i) {
-        load_brick(nodes, first + i, steps);
-        CrossedCells& crossed = nodes.crossed[first + i];
-        crossed = without_covered(crossed_cells_of(steps), bricks[first + i].covered);
-        if (crossed.any) read[i] = nodes_read(crossed, stencil);
-      }
+      for (size_t i = range.begin(); i < range.end(); ++i)
+        if (const CrossedCells& crossed = nodes.crossed[first + i]; crossed.any) read[i] = nodes_read(crossed, stencil);
     });
     for (size_t i = 0; i < count; ++i)
       if (nodes.crossed[first + i].any) want_read(bricks[first + i], read[i], nodes);
@@ -94,11 +100,11 @@ void want_stencils(const std::vector<LocalBrick>& bricks, const Stencil& stencil
 void load_brick(const LevelNodes& nodes, size_t brick, NodeSteps& steps) {
   for (size_t corner = 0; corner < 8; ++corner) {
     const glm::ivec3 step(corner & 1, corner >> 1 & 1, corner >> 2);
-    const std::int16_t* const from = nodes.blocks[nodes.of_brick[brick][corner]].steps.data();
+    const NodeBlock& block = nodes.blocks[nodes.of_brick[brick][corner]];
     for (int x = 0; x < (step.x ? 1 : 8); ++x)
       for (int y = 0; y < (step.y ? 1 : 8); ++y) {
         std::int16_t* const to = &steps[static_cast<size_t>(brick_element(8 * step.x + x, 8 * step.y + y, 8 * step.z))];
-        const std::int16_t* const row = from + (x << 6 | y << 3);
+        const std::int16_t* const row = block.steps + block.slot(static_cast<size_t>(x << 6 | y << 3));
         // Lengths that the compiler knows.
         if (step.z)
           *to = *row;
@@ -115,7 +121,7 @@ const NodeBlock* LevelNodes::find(const glm::ivec3& origin, const NodeBlock*& la
 }
 
 float LevelNodes::value(const glm::ivec3& node) const {
-  return value_of(blocks[at.find(key_of(block_of(node)))].steps[place_in_block(node)]);
+  return value_of(blocks[at.find(key_of(block_of(node)))].step(place_in_block(node)));
 }
 
 std::int64_t LevelNodes::known() const {
@@ -135,7 +141,7 @@ NodeReader LevelNodes::reader() const {
             static_cast<const LevelNodes*>(of)->find(block_of(node), block);
             last = block;
             const size_t n = place_in_block(node);
-            return block && block->is_known(n) ? block->steps[n] : std::numeric_limits<std::int16_t>::max();
+            return block && block->is_known(n) ? block->step(n) : std::numeric_limits<std::int16_t>::max();
           }};
 }
 
@@ -155,6 +161,7 @@ void sample_bricks(const LocalChoice& choice, const GradientDescriptor& gradient
     nodes.of_brick.reserve(bricks.size());
     for (const LocalBrick& brick : bricks) want_brick(brick, nodes);
     measure_wanted(nodes.blocks, measure);
+    find_crossed(bricks, nodes);
     // Stencils read the surface's own values beyond the brick: they are nearer to the surface's normals than a larger brick's interpolant.
     want_stencils(bricks, gradient.stencil, nodes);
     measure.larger = nullptr;
@@ -181,7 +188,7 @@ LevelSetBlock filed_block(const LevelNodes& nodes, const NodeBlock& block, NodeS
   std::array<std::uint64_t, 8> inside{};
   if (sides) inside = sides->inside(block);
   for (size_t n = 0; n < 512; ++n) {
-    filed.values[n] = block.is_known(n) ? nodes.value_of(block.steps[n]) : (inside[n >> 6] >> (n & 63) & 1) != 0 ? -1.0f : 0.0f;
+    filed.values[n] = block.is_known(n) ? nodes.value_of(block.step(n)) : (inside[n >> 6] >> (n & 63) & 1) != 0 ? -1.0f : 0.0f;
   }
   return filed;
 }

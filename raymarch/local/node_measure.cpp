@@ -91,7 +91,7 @@ void ask_field(const NodeBlock& block, const NodeMeasure& measure, const LargerB
 void take_from_larger(NodeBlock& block, const NodeMeasure& measure, LargerBeside& beside) {
   for (size_t word = 0; word < 8; ++word)
     for_each_bit(block.wanted[word] & ~block.known[word] & beside.near_nodes(word), word,
-                 [&](int n) { block.steps[static_cast<size_t>(n)] = measure.steps(beside.interpolated(node_of(block, n))); });
+                 [&](int n) { block.set(static_cast<size_t>(n), measure.steps(beside.interpolated(node_of(block, n)))); });
 }
 
 void evaluate_field(DistanceEvaluator& distance, NodeBlock& block, const NodeMeasure& measure) {
@@ -110,7 +110,7 @@ void evaluate_field(DistanceEvaluator& distance, NodeBlock& block, const NodeMea
       values[k] = static_cast<float>(on_its_side(static_cast<double>(values[k]), node_of(block, asked.numbers[k]), *beside));
   std::array<std::int16_t, kMostLanePoints> steps;
   quantise(std::span(values).first(asked.points.count), measure.steps_per_unit, steps.data());
-  for (size_t k = 0; k < asked.points.count; ++k) block.steps[asked.numbers[k]] = steps[k];
+  for (size_t k = 0; k < asked.points.count; ++k) block.set(asked.numbers[k], steps[k]);
 }
 
 /// All nodes of the block at once, as a uniform level set has them: the signs of some follow from others.
@@ -169,6 +169,9 @@ std::vector<size_t> order_of(const NodeBlocks& blocks) {
 }  // namespace
 
 void measure_wanted(NodeBlocks& blocks, const NodeMeasure& measure) {
+  if (blocks.empty()) return;
+  // Of a mesh all nodes of a block are measured together.
+  blocks.make_room(std::holds_alternative<MeshPart>(*blocks[0].part));
   const std::vector<size_t> order = order_of(blocks);
   const size_t at_once = std::clamp(order.size() / 64, size_t{16}, size_t{512});
   parallel_parts(order.size(), at_once, [&](const IndexRange<size_t>& range) {
@@ -180,7 +183,7 @@ void measure_wanted(NodeBlocks& blocks, const NodeMeasure& measure) {
 std::array<std::uint64_t, 8> NodeSides::inside(const NodeBlock& block) {
   std::array<std::uint64_t, 8> bits{};
   if (block.measured) {
-    for (size_t n = 0; n < 512; ++n) bits[n >> 6] |= std::uint64_t{block.steps[n] < 0} << (n & 63);
+    for (size_t n = 0; n < 512; ++n) bits[n >> 6] |= std::uint64_t{block.step(n) < 0} << (n & 63);
     return bits;
   }
   const Field& field = std::get<Field>(*block.part);

@@ -7,9 +7,12 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <tuple>
 
+#include "sdf/large_pages.h"
+#include "sdf/level_set_nano.h"
 #include "sdf/parallel.h"
 #include "sdf/size_error.h"
 #include "subdiv/mesh_body.h"
@@ -54,8 +57,38 @@ class Progress {
   std::mutex mutex_;
 };
 
+/// Blocks in pieces of memory that are given back as soon as none of their blocks is needed any more.
+class PassingBlocks {
+ public:
+  explicit PassingBlocks(size_t count) : pieces_((count + kPiece - 1) / kPiece), left_(pieces_.size()) {
+    for (size_t k = 0; k < pieces_.size(); ++k) {
+      const size_t size = std::min(kPiece, count - k * kPiece);
+      pieces_[k].resize(size);
+      left_[k] = size;
+    }
+  }
+  /// Unset at first.
+  LevelSetBlock& operator[](size_t i) { return pieces_[i / kPiece][i % kPiece]; }
+  /// Once for each block, from any thread.
+  void let_go(size_t i) {
+    if (--left_[i / kPiece] == 0) pieces_[i / kPiece] = {};
+  }
+
+ private:
+  static constexpr size_t kPiece = (size_t{4} << 20) / sizeof(LevelSetBlock);
+  std::vector<std::vector<LevelSetBlock, LargePageAllocator<LevelSetBlock>>> pieces_;
+  std::vector<std::atomic<size_t>> left_;
+};
+
 struct Band {
-  std::vector<LevelSetBlock> blocks;
+  /// One that has an active node.
+  struct Block {
+    PassingBlocks* of = nullptr;
+    size_t number = 0;
+  };
+  std::vector<std::unique_ptr<PassingBlocks>> waves;
+  std::vector<Block> blocks;
+  std::vector<glm::ivec3> origins;  ///< Of `blocks`.
   bool any_inside = false;
 };
 
@@ -127,7 +160,7 @@ Band make_band(const MeshBody& body, const LevelSetSettings& settings, double sh
     if (static_cast<std::int64_t>(known.size()) > max_blocks(settings))
       throw SizeError({"", "voxel_size", fmt::format("{}", settings.voxel_size), "closing the mesh's holes takes more memory than allowed",
                        "larger voxels, or a closed mesh"});
-    std::vector<LevelSetBlock> blocks(wave.size());
+    PassingBlocks& blocks = *band.waves.emplace_back(std::make_unique<PassingBlocks>(wave.size()));
     std::vector<char> membrane(wave.size(), 0), active(wave.size(), 0), inside(wave.size(), 0);
     parallel_parts(wave.size(), size_t{1}, [&](const IndexRange<size_t>& part) {
       FilledBlocks filled;
@@ -141,13 +174,31 @@ Band make_band(const MeshBody& body, const LevelSetSettings& settings, double sh
       }
     });
     for (size_t i = 0; i < wave.size(); ++i) {
-      if (!active[i]) continue;
-      band.blocks.push_back(blocks[i]);
+      if (!active[i]) {
+        blocks.let_go(i);
+        continue;
+      }
+      band.blocks.push_back({&blocks, i});
+      band.origins.push_back(wave[i]);
       band.any_inside |= inside[i] != 0;
     }
     wave = next_wave(wave, membrane, known);
   }
   return band;
+}
+
+/// What is written into the grid is let go.
+std::shared_ptr<LevelSetData> join_band(const Band& band, const LevelSetSettings& settings, const glm::dvec3& origin) {
+  if (band.blocks.empty())
+    throw InputError({.file = {}, .field = "mesh", .value = {}, .problem = "holds no surface", .expected = "a band with active voxels"});
+  const FillLeaves fill = [&band](const IndexRange<size_t>& part, const WriteLeaf& write) {
+    for (size_t i = part.first; i < part.last; ++i) {
+      const auto& [of, number] = band.blocks[i];
+      write(i, (*of)[number]);
+      of->let_go(number);
+    }
+  };
+  return join_leaves(band.origins, fill, settings.voxel_size, settings.half_width_voxels, "mesh", origin);
 }
 
 }  // namespace
@@ -157,6 +208,7 @@ MeshLevelSet level_set_from_mesh(const TriangleMesh& mesh, const LevelSetSetting
 }
 
 MeshLevelSet level_set_from_mesh(const MeshBody& body, const LevelSetSettings& settings) {
+  const auto started = std::chrono::steady_clock::now();
   check(body.bounds(), settings);
   std::vector<std::string> warnings = body.warnings();
   const double inside = share_with_inside(body, 0.5 * settings.voxel_size);
@@ -170,7 +222,9 @@ MeshLevelSet level_set_from_mesh(const MeshBody& body, const LevelSetSettings& s
     band = make_band(body, settings, settings.voxel_size);
   }
   warn_of_thin_sheets(body, settings.voxel_size, warnings);
-  return {level_set_from_blocks(band.blocks, settings.voxel_size, settings.half_width_voxels, "mesh", body.origin()), std::move(warnings)};
+  const std::shared_ptr<LevelSetData> data = join_band(band, settings, body.origin());
+  data->info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
+  return {LevelSet(data), std::move(warnings)};
 }
 
 }  // namespace limn

@@ -71,12 +71,12 @@ class PassingBlocks {
   LevelSetBlock& operator[](size_t i) { return pieces_[i / kPiece][i % kPiece]; }
   /// Once for each block, from any thread.
   void let_go(size_t i) {
-    if (--left_[i / kPiece] == 0) pieces_[i / kPiece] = {};
+    if (--left_[i / kPiece] == 0) PassingVector<LevelSetBlock>().swap(pieces_[i / kPiece]);
   }
 
  private:
   static constexpr size_t kPiece = (size_t{4} << 20) / sizeof(LevelSetBlock);
-  std::vector<std::vector<LevelSetBlock, LargePageAllocator<LevelSetBlock>>> pieces_;
+  std::vector<PassingVector<LevelSetBlock>> pieces_;
   std::vector<std::atomic<size_t>> left_;
 };
 

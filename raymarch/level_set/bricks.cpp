@@ -92,8 +92,10 @@ std::array<std::uint64_t, 8> open_cells(std::uint64_t covered) {
 
 /// The rows that are read.
 void fill_rows(const NodeSteps& steps, const BrickRows& rows, std::int16_t* to) {
-  for (int row = 0; row < kBrickRows; ++row)
-    if (rows.has(row)) std::copy_n(&steps[static_cast<size_t>(row * kBrickNodes)], kBrickNodes, to + row * kBrickNodes);
+  for (int row = 0; row < kBrickRows; ++row) {
+    const int first = row * kBrickNodes;
+    if (rows.has(row)) std::copy_n(&steps[static_cast<size_t>(first)], kBrickNodes, to + first);
+  }
 }
 
 /// `first`: where the layer's nodes would begin if it were a brick.

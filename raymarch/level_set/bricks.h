@@ -82,7 +82,9 @@ struct RayBricks {
   std::int64_t bytes() const;
   bool keeps(size_t brick, int cell) const { return (kept[8 * brick + static_cast<size_t>(cell >> 6)] >> (cell & 63) & 1) != 0; }
   /// Of a node of a kept cell.
-  std::int16_t value(size_t brick, int element) const { return values[static_cast<size_t>(first[brick] / 2 + element)]; }
+  std::int16_t value(size_t brick, int element) const {
+    return values[static_cast<size_t>(first[brick]) / 2 + static_cast<size_t>(element)];
+  }
 };
 
 /// The steps that stand for a value. No node lies on the surface itself: half a step to its side keeps its sign. In float until the end, so

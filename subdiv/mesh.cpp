@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "sdf/error.h"
+#include "subdiv/used_vertices.h"
 
 namespace limn {
 namespace {
@@ -100,7 +101,8 @@ void check_colors(const std::vector<glm::vec3>& colors, const std::string& file,
 std::vector<char> drawn_vertices(const Mesh& mesh) {
   std::vector<char> drawn(mesh.vertex_count(), 0);
   if (mesh.holes.empty()) {
-    for (const std::int32_t v : mesh.corner_vertices) drawn[static_cast<size_t>(v)] = 1;
+    mark_used(
+        mesh.corner_vertices.size(), [&](size_t i) { return mesh.corner_vertices[i]; }, drawn);
     return drawn;
   }
   size_t corner = 0, hole = 0;
@@ -121,11 +123,7 @@ void copy_names(const Mesh& from, Mesh& to) {
 }
 
 Box bounds(const Mesh& mesh) {
-  const std::vector<char> drawn = drawn_vertices(mesh);
-  Box box;
-  for (size_t v = 0; v < mesh.vertex_count(); ++v)
-    if (drawn[v]) box = include(box, mesh.positions[v]);
-  return box;
+  return box_of_used(drawn_vertices(mesh), [&](size_t v) { return mesh.positions[v]; });
 }
 
 std::vector<std::int32_t> first_corners(const Mesh& mesh) {

@@ -164,11 +164,17 @@ TriangleMesh triangulate(const Mesh& mesh, NormalKind kind, std::span<const glm:
   PlainFaces plain(mesh.face_count(), 0);
   const std::vector<FaceRun> runs = runs_of(mesh, plain, count, result.dropped_triangles);
   const CornerNormals normals = normals_at_corners(mesh, kind, corner_normals, smoothing);
-  result.positions = mesh.positions;
-  result.triangles.resize(count);
-  result.triangle_faces.resize(count);
-  if (!mesh.face_materials.empty()) result.triangle_materials.resize(count);
-  if (!normals.empty()) result.corner_normals.resize(3 * count);
+  // The system clears what is touched first: side by side.
+  parallel_invoke(
+      [&] {
+        result.positions = mesh.positions;
+        result.triangles.resize(count);
+      },
+      [&] {
+        if (!normals.empty()) result.corner_normals.resize(3 * count);
+        result.triangle_faces.resize(count);
+        if (!mesh.face_materials.empty()) result.triangle_materials.resize(count);
+      });
   parallel_for(size_t{0}, runs.size(), [&](size_t i) {
     size_t at = runs[i].first_triangle;
     visit_triangles(mesh, runs[i], plain, true,

@@ -1,6 +1,7 @@
 #include "raymarch/scene.h"
 
 #include "subdiv/face_orientation.h"
+#include "subdiv/used_vertices.h"
 
 #include "sdf/local_grid.h"
 namespace limn {
@@ -8,11 +9,7 @@ namespace {
 
 // Of the moved vertices, not of the moved box: a turned mesh would be framed too small.
 Box bounds_of(const MeshSource& source, const Affine& world_from_object) {
-  const std::vector<char> drawn = drawn_vertices(source.mesh);
-  Box box;
-  for (size_t v = 0; v < drawn.size(); ++v)
-    if (drawn[v]) box = include(box, world_from_object.point(source.mesh->positions[v]));
-  return box;
+  return box_of_used(drawn_vertices(source.mesh), [&](size_t v) { return world_from_object.point(source.mesh->positions[v]); });
 }
 
 bool has_subdivision_tags(const Mesh& mesh) {

@@ -8,6 +8,7 @@
 #include "subdiv/face_orientation.h"
 #include "subdiv/polygon.h"
 #include "subdiv/tessellate.h"
+#include "subdiv/used_vertices.h"
 
 namespace limn {
 namespace {
@@ -259,11 +260,9 @@ std::shared_ptr<const Polygons> refined_polygons(const SceneObject& object, int 
 
 Box bounds_of_triangles(const TriangleMesh& mesh) {
   std::vector<char> used(mesh.positions.size(), 0);
-  for (const glm::uvec3& triangle : mesh.triangles) used[triangle.x] = used[triangle.y] = used[triangle.z] = 1;
-  Box box;
-  for (size_t v = 0; v < used.size(); ++v)
-    if (used[v]) box = include(box, mesh.positions[v]);
-  return box;
+  mark_used(
+      3 * mesh.triangles.size(), [&](size_t i) { return mesh.triangles[i / 3][static_cast<int>(i % 3)]; }, used);
+  return box_of_used(used, [&](size_t v) { return mesh.positions[v]; });
 }
 
 std::string cannot_mesh(const SceneObject& object) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sdf/parallel.h"
 #include "sdf/quantile.h"
 #include "subdiv/mesh_facts.h"
 #include "subdiv/polygon.h"
@@ -55,12 +56,25 @@ void measure_edges(const Mesh& mesh, const Edges& edges, MeshFacts& facts) {
 }
 
 void measure_coordinates(const Mesh& mesh, MeshFacts& facts) {
-  bool single = true;
-  for (const glm::dvec3& p : mesh.positions)
-    for (int axis = 0; axis < 3; ++axis) {
-      facts.largest_coordinate = std::max(facts.largest_coordinate, std::abs(p[axis]));
-      single = single && is_single(p[axis]);
-    }
+  struct Found {
+    double largest = 0.0;
+    bool single = true;
+  };
+  const auto [largest, single] = parallel_reduce(
+      mesh.positions.size(), size_t{16'384}, Found{},
+      [&](const IndexRange<size_t>& part, Found found) {
+        for (size_t v = part.begin(); v < part.end(); ++v)
+          for (int axis = 0; axis < 3; ++axis) {
+            const double x = mesh.positions[v][axis];
+            found.largest = std::max(found.largest, std::abs(x));
+            found.single = found.single && is_single(x);
+          }
+        return found;
+      },
+      [](const Found& a, const Found& b) {
+        return Found{std::max(a.largest, b.largest), a.single && b.single};
+      });
+  facts.largest_coordinate = std::max(facts.largest_coordinate, largest);
   const double step = single_step(facts.largest_coordinate);
   // Coordinates on a much coarser lattice than single precision's (a box of whole numbers) were not rounded to it.
   const auto is_round = [&](double x) { return std::fmod(x, 8.0 * step) == 0.0; };

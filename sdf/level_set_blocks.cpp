@@ -16,14 +16,17 @@ std::shared_ptr<LevelSetData> finished(nanovdb::GridHandle<nanovdb::HostBuffer> 
   return data;
 }
 
+[[noreturn]] void refuse_without_surface(const std::string& name) {
+  throw InputError({.file = {}, .field = name, .value = {}, .problem = "holds no surface", .expected = "a band with active voxels"});
+}
+
 }  // namespace
 
 std::shared_ptr<LevelSetData> join_blocks(std::span<const LevelSetBlock> blocks, double voxel_size, double half_width_voxels,
                                           const std::string& name, const glm::dvec3& origin) {
   LIMN_CHECK(voxel_size > 0.0 && half_width_voxels > 0.0);
   const auto started = std::chrono::steady_clock::now();
-  if (std::none_of(blocks.begin(), blocks.end(), has_active_node))
-    throw InputError({.file = {}, .field = name, .value = {}, .problem = "holds no surface", .expected = "a band with active voxels"});
+  if (std::none_of(blocks.begin(), blocks.end(), has_active_node)) refuse_without_surface(name);
   auto data = finished(nano_grid(blocks, static_cast<float>(voxel_size * half_width_voxels)), voxel_size, half_width_voxels, name, origin);
   data->info.build_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - started).count();
   return data;
@@ -31,7 +34,8 @@ std::shared_ptr<LevelSetData> join_blocks(std::span<const LevelSetBlock> blocks,
 
 std::shared_ptr<LevelSetData> join_leaves(std::span<const glm::ivec3> origins, const FillLeaves& fill, double voxel_size,
                                           double half_width_voxels, const std::string& name, const glm::dvec3& origin) {
-  LIMN_CHECK(voxel_size > 0.0 && half_width_voxels > 0.0 && !origins.empty());
+  LIMN_CHECK(voxel_size > 0.0 && half_width_voxels > 0.0);
+  if (origins.empty()) refuse_without_surface(name);
   auto grid = nano_grid(origins, fill, static_cast<float>(voxel_size * half_width_voxels));
   return finished(std::move(grid), voxel_size, half_width_voxels, name, origin);
 }

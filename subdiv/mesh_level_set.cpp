@@ -189,8 +189,6 @@ Band make_band(const MeshBody& body, const LevelSetSettings& settings, double sh
 
 /// What is written into the grid is let go.
 std::shared_ptr<LevelSetData> join_band(const Band& band, const LevelSetSettings& settings, const glm::dvec3& origin) {
-  if (band.blocks.empty())
-    throw InputError({.file = {}, .field = "mesh", .value = {}, .problem = "holds no surface", .expected = "a band with active voxels"});
   const FillLeaves fill = [&band](const IndexRange<size_t>& part, const WriteLeaf& write) {
     for (size_t i = part.first; i < part.last; ++i) {
       const auto& [of, number] = band.blocks[i];

@@ -132,11 +132,11 @@ class PartOfRows {
       layout.first_row[i] = packing_.place(layout.rows[i]);
       for (size_t k = layout.first_layer[i]; k < layout.first_layer[i + 1]; ++k) {
         BrickLayer& layer = layout.layers[k];
-        const BrickRows read = rows_read_over(layout.crossed[i].cells, layer.face, 0);
+        layer.rows = rows_read_over(layout.crossed[i].cells, layer.face, 0);
         if (layer.face < 4)
-          layer.first_row = packing_.place(read);
+          layer.first_row = packing_.place(layer.rows);
         else
-          add_across_z(layer, read);
+          add_across_z(layer);
       }
     }
     place_across_z();
@@ -144,10 +144,10 @@ class PartOfRows {
   std::int64_t size() const { return packing_.size(); }
 
  private:
-  void add_across_z(BrickLayer& layer, const BrickRows& read) {
+  void add_across_z(BrickLayer& layer) {
     layer.slot = layer_depth(2) * static_cast<int>(waiting_.size());
     waiting_.push_back(&layer);
-    rows_.add(read);
+    rows_.add(layer.rows);
     if (waiting_.size() == kBrickNodes / layer_depth(2)) place_across_z();
   }
   void place_across_z() {

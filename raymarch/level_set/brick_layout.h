@@ -57,6 +57,7 @@ struct BrickLayer {
   int face = 0;                ///< See BrickNeighbors.
   int slot = 0;                ///< Of layers across z the first of the row's nodes that is theirs.
   std::int64_t first_row = 0;  ///< Where the row of the layer's nodes with x = y = 0 lies; those along the face's axis count from it.
+  BrickRows rows{};            ///< That are read of it.
 
   /// Of the layer's nodes along the face's axis, from the brick's first one.
   int first_node() const { return face % 2 == 0 ? -1 : face == 5 ? kBrickNodes - 1 : kBrickNodes; }

@@ -16,7 +16,8 @@ namespace {
 
 using Accessor = nanovdb::FloatGrid::AccessorType;
 
-// Offsets in bytes have to fit in 31 bits.
+// Offsets in bytes have to fit in 31 bits, and so do the numbers of cells (BrickHits::cell).
+constexpr size_t kMostBricks = (size_t{1} << 31) / 512 - 1;
 constexpr std::int64_t kMostRows = (std::int64_t{1} << 31) / (kBrickNodes * static_cast<std::int64_t>(sizeof(std::int16_t))) - 1;
 constexpr float kLargestStep = 32767.0f;
 // A crossed brick whose values span fewer steps than this in its crossed cells would lose digits of its normals.
@@ -24,6 +25,8 @@ constexpr int kFewestSteps = 1000;
 
 /// Left unset, so that each thread touches first what it measures.
 using BrickShapes = std::vector<BrickShape, LargePageAllocator<BrickShape>>;
+
+bool is_addressable(const BrickLayout& layout) { return layout.row_count <= kMostRows && layout.crossed.size() <= kMostBricks; }
 
 /// Of a brick, as brick_element() has them.
 const std::int16_t* values_of(const BrickLayout& layout, size_t brick, const RayBricks& bricks) {
@@ -100,15 +103,14 @@ void fill_rows(const NodeSteps& steps, const BrickRows& rows, std::int16_t* to) 
 
 /// `first`: where the layer's nodes would begin if it were a brick.
 template <class Reader>
-void fill_layer(const Reader& reader, const BrickLayer& layer, const Candidate& brick, std::int16_t* first) {
+void fill_layer(const Reader& reader, const BrickLayer& layer, const glm::ivec3& origin, std::int16_t* first) {
   const int axis = layer.face / 2;
-  const BrickRows rows = rows_read_over(brick.cells, layer.face, 0);
   glm::ivec3 from(0);
   from[axis] = layer.first_node();
   const int count = axis == 2 ? layer_depth(axis) : kBrickNodes;
   for (int row = 0; row < kBrickRows; ++row) {
-    if (!rows.has(row)) continue;
-    const glm::ivec3 node = brick.origin + from + glm::ivec3(row / kBrickNodes, row % kBrickNodes, 0);
+    if (!layer.rows.has(row)) continue;
+    const glm::ivec3 node = origin + from + glm::ivec3(row / kBrickNodes, row % kBrickNodes, 0);
     for (int z = 0; z < count; ++z) first[row * kBrickNodes + layer.slot + z] = reader.steps(node + glm::ivec3(0, 0, z));
   }
 }
@@ -138,7 +140,7 @@ BrickShapes fill(const MakeReader& reader, const BrickLayout& layout, RayBricks&
     const auto nodes = reader();
     for (size_t i = range.begin(); i < range.end(); ++i) {
       const BrickLayer& layer = layout.layers[i];
-      fill_layer(nodes, layer, layout.crossed[layer.brick], bricks.values.data() + layer.first_row * kBrickNodes);
+      fill_layer(nodes, layer, layout.crossed[layer.brick].origin, bricks.values.data() + layer.first_row * kBrickNodes);
     }
   });
   return shapes;
@@ -201,7 +203,7 @@ std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set, bool wit
   const auto start = std::chrono::steady_clock::now();
   const LevelSetData& data = level_set.data();
   const BrickLayout layout = lay_out_bricks(data);
-  if (layout.row_count > kMostRows || (with_spline && layout.crossed.size() > kMostSplineBricks)) return nullptr;
+  if (!is_addressable(layout) || (with_spline && layout.crossed.size() > kMostSplineBricks)) return nullptr;
   auto bricks = std::make_shared<RayBricks>();
   bricks->world_from_index = level_set.info().world_from_index;
   bricks->voxel_size = level_set.info().voxel_size;
@@ -219,7 +221,7 @@ std::shared_ptr<const RayBricks> make_bricks(const LevelSet& level_set, bool wit
 std::shared_ptr<RayBricks> make_bricks(const NodeReader& nodes, std::span<const BrickPlace> places, float steps_per_unit) {
   const auto start = std::chrono::steady_clock::now();
   const BrickLayout layout = lay_out_bricks(nodes, places);
-  if (layout.row_count > kMostRows) return nullptr;
+  if (!is_addressable(layout)) return nullptr;
   auto bricks = std::make_shared<RayBricks>();
   if (!layout.crossed.empty()) make_from([&nodes] { return nodes; }, layout, steps_per_unit, *bricks);
   bricks->prepare_ms = ms_since(start);

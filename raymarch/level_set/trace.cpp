@@ -23,13 +23,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace limn::HWY_NAMESPACE {
 namespace {
-HWY_NOINLINE void to_index_space(const Affine& index_from_render, const RayBatch& rays, size_t count, IndexRays& out) {
+/// Rays first to end - 1, whole packets.
+HWY_NOINLINE void to_index_space(const Affine& index_from_render, const RayBatch& rays, size_t first, size_t end, IndexRays& out) {
   const F d;
   for (int row = 0; row < 3; ++row) {
     const VF mx = set(static_cast<float>(index_from_render.linear[0][row])), my = set(static_cast<float>(index_from_render.linear[1][row])),
              mz = set(static_cast<float>(index_from_render.linear[2][row])),
              c = set(static_cast<float>(index_from_render.translation[row]));
-    for (size_t i = 0; i < count; i += hn::Lanes(d)) {
+    for (size_t i = first; i < end; i += hn::Lanes(d)) {
       const VF o = hn::Add(hn::Add(hn::Mul(mx, hn::Load(d, rays.origin_x + i)), hn::Mul(my, hn::Load(d, rays.origin_y + i))),
                            hn::Add(hn::Mul(mz, hn::Load(d, rays.origin_z + i)), c));
       VF v = hn::Add(hn::Add(hn::Mul(mx, hn::Load(d, rays.direction_x + i)), hn::Mul(my, hn::Load(d, rays.direction_y + i))),
@@ -151,13 +152,15 @@ struct Search {
   IndexRays rays;  ///< By the index coordinates of the size that is searched.
   BrickHits found;
   Waiting waiting;
-  alignas(64) std::int32_t cell[kRayBatchSize];  ///< Of all sizes.
+  alignas(64) float t[kRayBatchSize];            ///< Of all sizes, where there are several.
+  alignas(64) std::int32_t cell[kRayBatchSize];  ///< The same.
   alignas(64) std::int32_t size[kRayBatchSize];  ///< Whose cell it is.
 };
 
 void start(const RayBatch& rays, Search& search) {
   const auto count = static_cast<size_t>(rays.count);
   std::copy_n(rays.t_max, count, search.found.t);
+  std::copy_n(rays.t_max, count, search.t);
   std::fill_n(search.found.cell, count, -1);
   std::fill_n(search.cell, count, -1);
   std::fill_n(search.size, count, -1);
@@ -261,42 +264,55 @@ HWY_NOINLINE void search_tree(const BrickTrace& what, const BrickTree& tree, con
   }
 }
 
-/// Roots found last lie nearer than those of the sizes before.
+/// The next number below.
+HWY_INLINE VF just_before(VF t) {
+  const I di;
+  const VI bits = hn::BitCast(di, t), one = hn::Set(di, 1);
+  const auto positive = hn::RebindMask(di, hn::Gt(t, hn::Zero(F()))), negative = hn::RebindMask(di, hn::Lt(t, hn::Zero(F())));
+  constexpr auto kBelowZero = static_cast<std::int32_t>(0x8000'0001u);
+  return hn::BitCast(F(),
+                     hn::IfThenElse(positive, hn::Sub(bits, one), hn::IfThenElse(negative, hn::Add(bits, one), hn::Set(di, kBelowZero))));
+}
+
+/// Roots found last lie nearer than those of the sizes before. From here on only what is nearer still counts: of roots at the same place,
+/// on a face between two sizes, that of the larger voxels.
 void take(std::int32_t size, size_t count, Search& search) {
+  const F d;
   const I di;
   const VI none = hn::Set(di, -1);
   for (size_t i = 0; i < count; i += hn::Lanes(di)) {
     const VI cell = hn::Load(di, search.found.cell + i);
     const auto found = hn::Gt(cell, none);
+    const VF t = hn::Load(d, search.found.t + i);
+    hn::BlendedStore(t, hn::RebindMask(d, found), d, search.t + i);
+    hn::BlendedStore(just_before(t), hn::RebindMask(d, found), d, search.found.t + i);
     hn::BlendedStore(cell, found, di, search.cell + i);
     hn::BlendedStore(hn::Set(di, size), found, di, search.size + i);
     hn::Store(none, di, search.found.cell + i);
   }
 }
 
-/// The cells of one size; false where there are none.
-bool select(std::int32_t size, size_t count, Search& search) {
+/// A packet's cells of one size; false where there are none.
+HWY_INLINE bool select(std::int32_t size, size_t i, Search& search) {
   const I di;
-  const VI none = hn::Set(di, -1);
-  VI most = none;
-  for (size_t i = 0; i < count; i += hn::Lanes(di)) {
-    const auto own = hn::Eq(hn::Load(di, search.size + i), hn::Set(di, size));
-    const VI cell = hn::IfThenElse(own, hn::Load(di, search.cell + i), none);
-    hn::Store(cell, di, search.found.cell + i);
-    most = hn::Max(most, cell);
-  }
-  return !hn::AllTrue(di, hn::Eq(most, none));
+  const auto own = hn::Eq(hn::Load(di, search.size + i), hn::Set(di, size));
+  if (hn::AllFalse(di, own)) return false;
+  hn::Store(hn::IfThenElse(own, hn::Load(di, search.cell + i), hn::Set(di, -1)), di, search.found.cell + i);
+  return true;
 }
 
 void write(const BrickTrace* sizes, size_t number, const RayBatch& rays, Search& search, HitBatch& hits) {
   const size_t count = static_cast<size_t>(rays.count), lanes = hn::Lanes(F());
+  if (number > 1) std::copy_n(search.t, count, search.found.t);
   for (size_t k = 0; k < number; ++k) {
     if (!sizes[k].view->groups) continue;
-    if (number > 1) {
-      if (!select(static_cast<std::int32_t>(k), count, search)) continue;
-      to_index_space(sizes[k].view->index_from_render, rays, count, search.rays);
+    for (size_t i = 0; i < count; i += lanes) {
+      if (number > 1) {
+        if (!select(static_cast<std::int32_t>(k), i, search)) continue;
+        to_index_space(sizes[k].view->index_from_render, rays, i, i + lanes, search.rays);
+      }
+      write_packet(sizes[k], search.rays, rays, i, search.found, hits);
     }
-    for (size_t i = 0; i < count; i += lanes) write_packet(sizes[k], search.rays, rays, i, search.found, hits);
   }
 }
 
@@ -305,10 +321,11 @@ void TraceBricks(const BrickTrace* sizes, size_t number, const BrickTree* const*
   Search search;
   const auto count = static_cast<size_t>(rays.count);
   start(rays, search);
-  for (size_t k = 0; k < number; ++k) {
+  // The largest voxels first: most of what is seen lies in them, and hides smaller ones.
+  for (size_t k = number; k-- > 0;) {
     const BrickView& view = *sizes[k].view;
     if (!view.groups || (!trees && !touches(view, tile))) continue;
-    to_index_space(view.index_from_render, rays, count, search.rays);
+    to_index_space(view.index_from_render, rays, 0, count, search.rays);
     if (trees)
       search_tree(sizes[k], *trees[k], rays, search);
     else

@@ -214,6 +214,8 @@ std::shared_ptr<const FieldCage> find_field_cage(const Field& field) {
 
 double time_to_find_ms(const FieldCage& cage) { return cage.found_ms; }
 
+const Mesh& mesh_of(const FieldCage& cage) { return cage.cage.mesh; }
+
 Mesh cage_of(const Field& field) { return find_cage(field).cage.mesh; }
 
 Mesh tessellate(const Field& field, const TessellateSettings& settings) {

@@ -27,6 +27,7 @@ struct TessellateSettings {
 std::shared_ptr<const FieldCage> find_field_cage(const Field& field);
 /// Wall clock, to find it, or to refine the one before it once more.
 double time_to_find_ms(const FieldCage& cage);
+const Mesh& mesh_of(const FieldCage& cage);
 
 /// A cage of the surface's topology, about 100 faces and more where the shape is rich: dual contouring of a coarse sampling, which is
 /// refined until the count of parts and the Euler number are those of the next finer sampling. Throws InputError for unbounded fields.

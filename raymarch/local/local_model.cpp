@@ -4,6 +4,7 @@
 #include "raymarch/local/local_mesh.h"
 #include "raymarch/local/local_sources.h"
 #include "raymarch/local_model.h"
+#include "raymarch/surface/object_mesh.h"
 
 namespace limn {
 namespace {
@@ -123,15 +124,6 @@ std::string why_not_local(const SceneObject& object, const SurfaceSettings& sett
   return "it has one resolution only: no field and no subdivision cage";
 }
 
-namespace {
-
-glm::dvec3 render_origin_of(const Scene& scene) {
-  const Box box = bounds(scene);
-  return box.empty() ? glm::dvec3(0.0) : box.center();
-}
-
-}  // namespace
-
 std::vector<LevelSet> local_level_sets(const Scene& scene, const SurfaceSettings& settings, const LocalSettings& local,
                                        std::vector<std::string>* warnings) {
   const glm::dvec3 render_origin = render_origin_of(scene);
@@ -147,10 +139,9 @@ SceneModel build_local_model(const Scene& scene, const SurfaceSettings& settings
   own.kept_mesh = nullptr;
   // build_model takes the meshes as it takes those of an earlier model.
   ObjectMeshCache made;
-  if (cache) cache->starts.resize(scene.objects.size());
+  if (cache) make_starts(scene, *cache);
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
-    if (cache && !cache->starts[i]) cache->starts[i] = std::make_shared<KeptStart>();
     if (cache) own.kept_start = cache->starts[i];
     const auto start = std::chrono::steady_clock::now();
     std::optional<ObjectMesh> mesh = local_mesh_of(object, own, render_origin, in_render);

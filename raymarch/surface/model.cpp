@@ -40,12 +40,10 @@ SceneModel build_model(const Scene& scene, const SurfaceSettings& settings, Obje
   SceneModel model;
   if (cache) {
     cache->kept.resize(scene.objects.size());
-    cache->starts.resize(scene.objects.size());
-    for (std::shared_ptr<KeptStart>& start : cache->starts)
-      if (!start) start = std::make_shared<KeptStart>();
+    make_starts(scene, *cache);
   }
   model.bounds = bounds(scene);
-  if (!model.bounds.empty()) model.render_origin = model.bounds.center();
+  model.render_origin = render_origin_of(scene);
   const auto field_scratch = std::make_shared<FieldScratch>();
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raymarch/surface/object_mesh.h"
 #include "sdf/error.h"
 #include "sdf/field.h"
 #include "sdf/parallel.h"
+#include "subdiv/local_field.h"
 #include "subdiv/mesh_distance.h"
 #include "subdiv/mesh_level_set.h"
 #include "subdiv/tessellate.h"
@@ -139,56 +141,74 @@ ViewLevel level_of_cage(const MeshSource& source, Scheme scheme, const SurfaceSe
   return limited("it is the finest level");
 }
 
-/// Of a tessellated field at the middles of its faces and edges, pixels; distances to first order.
-double field_deviation_px(const Field& field, const Mesh& mesh, const Pictures& pictures) {
+/// The middles of faces, and of their edges.
+std::vector<glm::dvec3> middles_of(const Mesh& mesh) {
   const std::vector<std::int32_t> first = first_corners(mesh);
-  const auto measure = [&](FieldEvaluator& evaluator, size_t face) {
+  std::vector<glm::dvec3> middles(mesh.face_count() + mesh.corner_vertices.size());
+  parallel_for(size_t{0}, mesh.face_count(), [&](size_t face) {
     const std::span<const std::int32_t> corners = corners_of(mesh, first, face);
     const auto at = [&](size_t k) { return mesh.positions[static_cast<size_t>(corners[k % corners.size()])]; };
-    glm::dvec3 middle(0.0);
-    double largest = 0.0;
-    const auto look = [&](const glm::dvec3& point) {
-      const double scale = pictures.pixels_per_unit(point);
-      if (scale == 0.0) return;
-      const FieldJet jet = evaluator.jet(point);
-      const double slope = glm::length(jet.gradient);
-      if (slope > 0.0) largest = std::max(largest, scale * std::abs(jet.value) / slope);
-    };
+    glm::dvec3* const edges = &middles[mesh.face_count() + static_cast<size_t>(first[face])];
+    glm::dvec3& middle = middles[face] = glm::dvec3(0.0);
     for (size_t k = 0; k < corners.size(); ++k) {
       middle += at(k) / static_cast<double>(corners.size());
-      look(0.5 * (at(k) + at(k + 1)));
+      edges[k] = 0.5 * (at(k) + at(k + 1));
     }
-    look(middle);
-    return largest;
-  };
-  return largest_of(mesh.face_count(), [&] {
-    return [&measure, evaluator = FieldEvaluator(field)](size_t face, double) mutable { return measure(evaluator, face); };
   });
+  return middles;
 }
 
-ViewLevel level_of_field(const Field& field, const SurfaceSettings& settings, const Pictures& pictures, double tolerance_px) {
-  double before = std::numeric_limits<double>::infinity();
-  for (int level = 0; level <= kFinest; ++level) {
-    const Mesh mesh = tessellate(field, {.level = level, .normals = NormalKind::flat, .max_bytes = settings.max_bytes});
+/// Of a tessellated field at the middles of its faces and edges, pixels; distances to first order.
+double field_deviation_px(const Field& field, const Mesh& mesh, const Pictures& pictures) {
+  const std::vector<glm::dvec3> points = middles_of(mesh);
+  std::vector<double> deviations(points.size());  // at first pixels for each world unit
+  parallel_for(size_t{0}, points.size(), [&](size_t i) { deviations[i] = pictures.pixels_per_unit(points[i]); });
+  std::vector<std::uint32_t> seen;
+  for (size_t i = 0; i < points.size(); ++i)
+    if (deviations[i] > 0.0) seen.push_back(static_cast<std::uint32_t>(i));
+  visit_groups(field, points, std::vector<double>(points.size()), std::move(seen),
+               [&](LocalField& local, std::span<const std::uint32_t> members) {
+                 const std::vector<double> off = local.distances_off(members_of(points, members));
+                 for (size_t k = 0; k < members.size(); ++k) deviations[members[k]] *= off[k];
+               });
+  return deviations.empty() ? 0.0 : *std::max_element(deviations.begin(), deviations.end());
+}
+
+/// `field` and the cameras of `pictures` in render space.
+ViewLevel level_of_field(const Field& field, const SurfaceSettings& settings, const glm::dvec3& render_origin, const Pictures& pictures,
+                         double tolerance_px) {
+  KeptStart own;
+  KeptStart& start = settings.kept_start ? *settings.kept_start : own;
+  double spared_ms = 0.0, before = std::numeric_limits<double>::infinity();
+  TessellateSettings how{.normals = NormalKind::flat, .max_bytes = settings.max_bytes};
+  how.cage = kept_cage(field, render_origin, &start, spared_ms);
+  how.refinements = &start.refinements;
+  for (how.level = 0;; ++how.level) {
+    const Mesh mesh = tessellate(field, how);
     const double deviation = field_deviation_px(field, mesh, pictures);
-    if (deviation <= tolerance_px) return {level, deviation, {}};
+    if (deviation <= tolerance_px) return {how.level, deviation, {}};
     const double next = 4.0 * static_cast<double>(mesh.face_count());
-    if (level == kFinest) return {level, deviation, "it is the finest level"};
+    if (how.level == kFinest) return {how.level, deviation, "it is the finest level"};
+    if (predict_refined_size(mesh_of(*how.cage), Scheme::bilinear, how.level + 1).bytes > settings.max_bytes)
+      return {how.level, deviation, "a finer one would not fit into memory"};
     if (2.0 * next > kMostTrianglesPerPixel * std::max(pictures.pixels(), 1e4))
-      return {level, deviation, "a finer one would have more than four triangles a pixel"};
+      return {how.level, deviation, "a finer one would have more than four triangles a pixel"};
     // As at sharp edges that no vertex lies on.
-    if (level >= 4 && deviation > 0.8 * before) return {level, deviation, "a finer one is hardly nearer"};
+    if (how.level >= 4 && deviation > 0.8 * before) return {how.level, deviation, "a finer one is hardly nearer"};
     before = deviation;
   }
-  return {};
 }
 
 }  // namespace
 
-ViewLevel level_for_views(const SceneObject& object, const SurfaceSettings& settings, std::span<const Camera> cameras,
-                          double deviation_px) {
+ViewLevel level_for_views(const SceneObject& object, const SurfaceSettings& settings, std::span<const Camera> cameras, double deviation_px,
+                          const glm::dvec3& render_origin) {
   LIMN_CHECK(deviation_px > 0.0 && !cameras.empty());
-  if (const Field* field = std::get_if<Field>(&object.source)) return level_of_field(*field, settings, {cameras}, deviation_px);
+  if (const Field* field = std::get_if<Field>(&object.source)) {
+    std::vector<Camera> in_render(cameras.begin(), cameras.end());
+    for (Camera& camera : in_render) camera = moved(camera, render_origin);
+    return level_of_field(translate(*field, -render_origin), settings, render_origin, {in_render}, deviation_px);
+  }
   const MeshSource* source = std::get_if<MeshSource>(&object.source);
   const std::optional<Scheme> scheme = !source ? std::nullopt : settings.scheme ? settings.scheme : source->scheme;
   if (!scheme) return {};
@@ -208,11 +228,17 @@ bool has_levels(const SceneObject& object, const SurfaceSettings& settings) {
 
 }  // namespace
 
-std::vector<std::string> refine_for_views(const SurfaceSettings& settings, std::span<const Camera> cameras, Scene& scene) {
+std::vector<std::string> refine_for_views(const SurfaceSettings& settings, std::span<const Camera> cameras, Scene& scene,
+                                          ObjectMeshCache* cache) {
   std::vector<std::string> notes;
-  for (SceneObject& object : scene.objects) {
+  const glm::dvec3 render_origin = render_origin_of(scene);
+  if (cache) make_starts(scene, *cache);
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    SceneObject& object = scene.objects[i];
     if (!has_levels(object, settings)) continue;
-    const ViewLevel chosen = level_for_views(object, settings, cameras);
+    SurfaceSettings own = settings;
+    if (cache) own.kept_start = cache->starts[i];
+    const ViewLevel chosen = level_for_views(object, own, cameras, kViewDeviation_px, render_origin);
     object.level = chosen.level;
     // At level 0 nothing was compared.
     const std::string deviation = std::isfinite(chosen.deviation_px) ? fmt::format("{:.2g} px from its surface", chosen.deviation_px)

@@ -3,6 +3,7 @@
 
 #include "raymarch/truth/proxy.h"
 #include "raymarch/surface/model_parts.h"
+#include "raymarch/surface/object_mesh.h"
 
 #include <fmt/format.h>
 
@@ -31,7 +32,7 @@ SceneModel model_of(const Scene& scene, const Settings& settings_of) {
   // Each object has settings of its own. They are built side by side, and put together about the whole scene's centre.
   SceneModel model;
   model.bounds = bounds(scene);
-  if (!model.bounds.empty()) model.render_origin = model.bounds.center();
+  model.render_origin = render_origin_of(scene);
   std::vector<SceneObject> objects = scene.objects;
   std::vector<SurfaceSettings> settings;
   for (SceneObject& object : objects) {

@@ -26,8 +26,9 @@ std::vector<std::string> warn_of_input(const Options& options, const Scene& scen
 }
 
 void check_cost(const Options& options, const Scene& scene, const SurfaceSettings& settings, const PictureLoad& load,
-                const std::vector<std::string>& kinds) {
-  const auto cost = check_limits(options.spec.limits, scene, settings, load, kinds, options.verbose);
+                PlannedModels models) {
+  models.always = options.verbose;
+  const auto cost = check_limits(options.spec.limits, scene, settings, load, models);
   if (options.verbose && cost)
     print_note(fmt::format("expected to take about {} and {}", bytes_text(cost->bytes()), time_text(cost->time_ms)));
 }

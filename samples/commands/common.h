@@ -20,6 +20,6 @@ std::vector<std::string> warn_of_input(const Options& options, const Scene& scen
 
 /// check_limits; with --verbose it says what is expected.
 void check_cost(const Options& options, const Scene& scene, const SurfaceSettings& settings, const PictureLoad& load,
-                const std::vector<std::string>& kinds = {});
+                PlannedModels models = {});
 
 }  // namespace limn

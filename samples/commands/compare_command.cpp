@@ -49,7 +49,7 @@ void write_all(const Comparison& comparison, const fs::path& folder, const Optio
 }
 
 // What is held at a time: the reference's picture, one model's, and every cell's ink.
-std::vector<std::string> check(const Options& options, const Comparison& comparison) {
+std::vector<std::string> check(const Options& options, Comparison& comparison) {
   constexpr double kReferenceBytes = 65.0, kCellBytes = 95.0;  // a pixel; measured at 1280 x 720
   std::vector<std::string> kinds, methods;
   for (const ComparedModel& model : comparison.models) {
@@ -61,7 +61,7 @@ std::vector<std::string> check(const Options& options, const Comparison& compari
     for (const std::string& name : names_of(column.calls)) methods.push_back(name);
   }
   const ComparedModel& last = comparison.models.back();
-  check_cost(options, last.scene, last.surface, load, kinds);
+  check_cost(options, last.scene, last.surface, load, {.kinds = kinds, .meshes = &comparison.meshes});
   return warn_of_input(options, last.scene, last.surface, {.surfaces = kinds, .methods = methods});
 }
 

@@ -64,7 +64,7 @@ std::string dump_text(const Options& options, SceneInput input) {
   check_dump(dump, scene, reasons);
   refuse_undumped(options.spec.surface, input, kinds);
   check_extent(scene);
-  if (dump.what == "bricks") check_cost(options, scene, settings, {}, different(kinds));
+  if (dump.what == "bricks") check_cost(options, scene, settings, {}, {.kinds = different(kinds)});
   const Box all = bounds(scene);
   const glm::dvec3 origin = all.empty() ? glm::dvec3(0.0) : all.center();
   std::string text = fmt::format("render_origin: [{} {} {}]\n", origin.x, origin.y, origin.z);

@@ -157,19 +157,19 @@ void choose_picture(const Options& options, Render& render) {
 }
 
 /// Throws InputError where the call needs more than it may have. A local level set says so itself: what it takes is not known before.
-void check_render_cost(const Options& options, const Render& render, const Camera& camera) {
+void check_render_cost(const Options& options, const Camera& camera, Render& render) {
   if (render.local && has_local_bricks(render.surface.kind)) return;
   const bool layered = render.picture.hands_over_gbuffer;
   PictureLoad load = picture_load(camera, planned_picture(render), {pictures_of(options), layered, options.frames.frames > 1});
   if (std::any_of(render.outputs.begin(), render.outputs.end(), by_module)) load.library_bytes = kPictureLibraryBytes;
-  check_cost(options, render.input.scene, render.surface, load);
+  check_cost(options, render.input.scene, render.surface, load, {.meshes = &render.meshes});
 }
 
 SceneModel build(const Options& options, const std::vector<Camera>& cameras, Render& render) {
   const auto start = std::chrono::steady_clock::now();
   std::vector<std::string> levels;
   if (options.spec.surface.level_for_view && !options.plan.tolerance_px)
-    levels = refine_for_views(render.surface, cameras, render.input.scene);
+    levels = refine_for_views(render.surface, cameras, render.input.scene, &render.meshes);
   SceneModel model = render.local ? build_local_model(render.input.scene, render.surface, *render.local, &render.meshes)
                                   : build_model(render.input.scene, render.surface, &render.meshes);
   render.timings.build_ms = elapsed_ms(start);
@@ -234,7 +234,7 @@ int run(const Options& given) {
     render.local = local_settings(*options.local.tolerance_px, options.plan.silhouette, render.picture.methods, cameras);
     render.local->steady = options.frames.frames > 1;
   }
-  check_render_cost(options, render, cameras.front());
+  check_render_cost(options, cameras.front(), render);
   render.warnings =
       warn_of_input(options, render.input.scene, render.surface, {.methods = names_of(render.picture.methods), .meshes = &render.meshes});
 

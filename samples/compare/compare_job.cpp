@@ -14,13 +14,15 @@ Comparison comparison_for(const ExperimentSpec& spec, SceneInput& input, std::ve
   SurfaceSettings settings = surface_settings(spec, input);
   const Camera camera =
       camera_of_view(camera_settings(spec.camera, input), framed_input(spec.camera, input), framing_settings(spec.camera), 0, 1);
+  ObjectMeshCache meshes;
   if (spec.surface.level_for_view) {
     settings.kind = "mesh";
-    notes = refine_for_views(settings, {&camera, 1}, input.scene);
+    notes = refine_for_views(settings, {&camera, 1}, input.scene, &meshes);
   }
   settings.kind.clear();
   const bool gradient_chosen = spec.surface.gradient.has_value() || input.surface.gradient.has_value();
   Comparison comparison = plan_comparison(input, settings, spec.surfaces, gradient_chosen);
+  comparison.meshes = std::move(meshes);
   comparison.picture = picture_settings(spec.border, input);
   if (!comparison.picture.background) comparison.picture.background = glm::vec3(1.0f);
   std::vector<std::vector<MethodCall>> columns;

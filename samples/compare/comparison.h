@@ -73,6 +73,7 @@ struct Comparison {
   std::vector<ComparedModel> models;                       ///< The first is the reference.
   std::vector<Cell> cells;                                 ///< All methods of the first model, then of the next.
   std::vector<ExperimentTruth> truths;                     ///< One a threshold; the first serves methods without one.
+  ObjectMeshCache meshes;                                  ///< What meshes start from, as far as somebody has looked for it.
   bool with_times = true;  ///< Measured times are shown and written; without them equal calls write equal bytes.
   Window seen;             ///< The part of the pictures where any model hits something, with a margin; panels show that.
 

@@ -35,6 +35,7 @@ Experiment experiment_of(const Comparison& comparison) {
   experiment.silhouette_of_all = true;
   experiment.reference = comparison.truth_reference;
   experiment.share_meshes = true;
+  experiment.meshes = comparison.meshes;
   return experiment;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "raymarch/level_set/level_set_marcher.h"
+#include "raymarch/surface/object_mesh.h"
 #include "samples/input/scene_facts.h"
 #include "samples/output/output.h"
 #include "sdf/error.h"
@@ -109,7 +110,9 @@ void count_formula(const Field& field, SceneSize::Object& size) {
   size.formula = sum / size.parts / kOfEllipsoid;
 }
 
-SceneSize::Object size_of(const SceneObject& object, const SurfaceSettings& settings, bool with_cages) {
+/// `start`: of the object, about `render_origin`; may be null.
+SceneSize::Object size_of(const SceneObject& object, const SurfaceSettings& settings, bool with_cages, const glm::dvec3& render_origin,
+                          KeptStart* start) {
   SceneSize::Object size;
   const Box box = bounds(object);
   if (box.finite()) size.longest_side = box.longest_side();
@@ -123,9 +126,10 @@ SceneSize::Object size_of(const SceneObject& object, const SurfaceSettings& sett
       return size;
     }
     try {
-      const Mesh cage = cage_of(*field);
-      size.faces = static_cast<double>(cage.face_count());
-      size.area = area_of(cage);
+      double spared_ms = 0.0;
+      const std::shared_ptr<const FieldCage> cage = kept_cage(translate(*field, -render_origin), render_origin, start, spared_ms);
+      size.faces = static_cast<double>(mesh_of(*cage).face_count());
+      size.area = area_of(mesh_of(*cage));
     } catch (const InputError& error) {
       size.refines = false;
       size.area = area_of(*field);
@@ -191,9 +195,12 @@ void add_grid(const SceneSize::Object& object, const SurfaceSettings& settings, 
 
 }  // namespace
 
-SceneSize size_of(const Scene& scene, const SurfaceSettings& settings, bool with_cages) {
+SceneSize size_of(const Scene& scene, const SurfaceSettings& settings, bool with_cages, ObjectMeshCache* cache) {
+  const glm::dvec3 render_origin = render_origin_of(scene);
+  if (cache) make_starts(scene, *cache);
   SceneSize size;
-  for (const SceneObject& object : scene.objects) size.objects.push_back(size_of(object, settings, with_cages));
+  for (size_t i = 0; i < scene.objects.size(); ++i)
+    size.objects.push_back(size_of(scene.objects[i], settings, with_cages, render_origin, cache ? cache->starts[i].get() : nullptr));
   return size;
 }
 

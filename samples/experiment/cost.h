@@ -34,8 +34,8 @@ struct SceneSize {
   std::vector<Object> objects{};  ///< In the scene's order.
 };
 /// `with_cages`: fields' tessellations are counted by their cages, which takes as long as making them; otherwise their faces are 0 and
-/// their area is counted on a lattice.
-SceneSize size_of(const Scene& scene, const SurfaceSettings& settings, bool with_cages = true);
+/// their area is counted on a lattice. `cache`: of build_model, which then starts from the cages that were made; may be null.
+SceneSize size_of(const Scene& scene, const SurfaceSettings& settings, bool with_cages = true, ObjectMeshCache* cache = nullptr);
 
 /// Of one model of the scene; `pixels` are those of a picture.
 ExpectedCost expected_cost(const SceneSize& size, const SurfaceSettings& settings, double pixels);

@@ -41,6 +41,7 @@ struct Experiment {
   std::optional<PictureSettings> picture{};  ///< Samples and background of finished pictures; unset: ink at the pixel centres alone.
   bool silhouette_of_all = false;            ///< Methods without a threshold are measured, too, by the metrics that need none.
   bool share_meshes = false;                 ///< One model's mesh is the next one's start; times to build count what that was spared.
+  ObjectMeshCache meshes{};                  ///< What such meshes start from, where somebody found it before. Of the same scene.
   bool adds_models = false;                  ///< More models are added while it runs: what is shared is kept for them.
   TruthReference reference = TruthReference::given;  ///< What the true border of meshes and volumes is asked of.
   bool measures_floor = true;                        ///< What the reference scores is measured, too (MeasuredCell::floor).

@@ -39,14 +39,14 @@ struct Limit {
   bool holds(const CallCost& cost) const { return cost.bytes() <= bytes && cost.time_ms <= kTimeTrust * time_ms; }
 };
 
-CallCost largest(const Scene& scene, const SurfaceSettings& settings, const PictureLoad& load, const std::vector<std::string>& kinds) {
-  if (kinds.empty()) return expected_call(scene, settings, load);
+CallCost largest(const Scene& scene, const SurfaceSettings& settings, const PictureLoad& load, const PlannedModels& models) {
+  if (models.kinds.empty()) return expected_call(scene, settings, load, true, models.meshes);
   CallCost most;
   double time_ms = 0.0;
-  for (const std::string& kind : kinds) {
+  for (const std::string& kind : models.kinds) {
     SurfaceSettings own = settings;
     own.kind = kind;
-    const CallCost cost = expected_call(scene, own, load);
+    const CallCost cost = expected_call(scene, own, load, true, models.meshes);
     time_ms += cost.time_ms;
     if (cost.bytes() > most.bytes()) most = cost;
   }
@@ -106,13 +106,13 @@ bool shrink(const Scene& scene, bool model, const std::vector<std::string>& kind
 
 std::string cost_text(const CallCost& cost, bool time) { return time ? time_text(cost.time_ms) : bytes_text(cost.bytes()); }
 
-std::string what_would_do(const Scene& scene, const SurfaceSettings& settings, const PictureLoad& load,
-                          const std::vector<std::string>& kinds, const Limit& limit, bool time) {
+std::string what_would_do(const Scene& scene, const SurfaceSettings& settings, const PictureLoad& load, const PlannedModels& models,
+                          const Limit& limit, bool time) {
   Smaller smaller{settings, load};
-  CallCost cost = largest(scene, settings, load, kinds);
+  CallCost cost = largest(scene, settings, load, models);
   const bool model = time ? cost.time_ms > 2.0 * load.other_ms : cost.model_bytes > cost.picture_bytes;
-  while (shrink(scene, model, kinds, smaller)) {
-    cost = largest(scene, smaller.settings, smaller.load, kinds);
+  while (shrink(scene, model, models.kinds, smaller)) {
+    cost = largest(scene, smaller.settings, smaller.load, models);
     if (limit.holds(cost)) return fmt::format("; {} needs about {}", smaller.words, cost_text(cost, time));
   }
   return "";
@@ -143,10 +143,11 @@ PictureLoad picture_load(const Camera& camera, const PictureSettings& picture, c
   return load;
 }
 
-CallCost expected_call(const Scene& scene, const SurfaceSettings& settings, const PictureLoad& load, bool with_cages) {
+CallCost expected_call(const Scene& scene, const SurfaceSettings& settings, const PictureLoad& load, bool with_cages,
+                       ObjectMeshCache* cache) {
   // Cages are made only where there is a mesh of them to count.
   const bool meshes = settings.kind.starts_with("mesh");
-  const ExpectedCost expected = expected_cost(size_of(scene, settings, with_cages && meshes), settings, load.pixels);
+  const ExpectedCost expected = expected_cost(size_of(scene, settings, with_cages && meshes, cache), settings, load.pixels);
   CallCost cost;
   cost.model_bytes = static_cast<double>(expected.bytes);
   cost.picture_bytes = load.pixels * load.bytes_per_pixel;
@@ -156,10 +157,14 @@ CallCost expected_call(const Scene& scene, const SurfaceSettings& settings, cons
 }
 
 std::optional<CallCost> check_limits(const LimitSpec& limits, const Scene& scene, const SurfaceSettings& settings, const PictureLoad& load,
-                                     const std::vector<std::string>& kinds, bool always) {
+                                     const PlannedModels& models) {
   const bool asked = limits.max_memory || limits.max_time_ms;
-  if (!asked && !always && is_small(settings, load)) return std::nullopt;
-  const CallCost cost = largest(scene, settings, load, kinds);
+  if (!asked && !models.always && is_small(settings, load)) return std::nullopt;
+  // Smaller calls are looked at, too, where this one does not do: they start from the same.
+  ObjectMeshCache own;
+  PlannedModels kept = models;
+  if (!kept.meshes) kept.meshes = &own;
+  const CallCost cost = largest(scene, settings, load, kept);
   const Limit limit{limits.max_memory ? static_cast<double>(*limits.max_memory) : machine_memory(),
                     limits.max_time_ms.value_or(std::numeric_limits<double>::infinity())};
   if (limit.holds(cost)) return cost;
@@ -167,12 +172,12 @@ std::optional<CallCost> check_limits(const LimitSpec& limits, const Scene& scene
     const std::string who = limits.max_memory ? "max_memory allows" : "the machine has";
     throw InputError({"", "", "",
                       fmt::format("the call needs about {}; {} {}{}", bytes_text(cost.bytes()), who, bytes_text(limit.bytes),
-                                  what_would_do(scene, settings, load, kinds, limit, false)),
+                                  what_would_do(scene, settings, load, kept, limit, false)),
                       ""});
   }
   throw InputError({"", "", "",
                     fmt::format("the call needs about {}; max_time allows {}{}", time_text(cost.time_ms), time_text(limit.time_ms),
-                                what_would_do(scene, settings, load, kinds, limit, true)),
+                                what_would_do(scene, settings, load, kept, limit, true)),
                     ""});
 }
 

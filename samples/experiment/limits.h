@@ -37,17 +37,24 @@ struct CallCost {
   double model_bytes = 0.0, picture_bytes = 0.0, library_bytes = 0.0, time_ms = 0.0;
   double bytes() const { return kProgramBytes + library_bytes + model_bytes + picture_bytes; }
 };
-/// `with_cages` as in size_of (samples/experiment/cost.h).
-CallCost expected_call(const Scene& scene, const SurfaceSettings& settings, const PictureLoad& load, bool with_cages = true);
+/// `with_cages` and `cache` as in size_of (samples/experiment/cost.h).
+CallCost expected_call(const Scene& scene, const SurfaceSettings& settings, const PictureLoad& load, bool with_cages = true,
+                       ObjectMeshCache* cache = nullptr);
+
+/// What a call models.
+struct PlannedModels {
+  std::vector<std::string> kinds{};   ///< Representations that are modelled one after the other; empty: settings.kind.
+  ObjectMeshCache* meshes = nullptr;  ///< What is found to tell what they take stays there for build_model. Null: it goes.
+  bool always = false;                ///< What is expected is told, however little it is.
+};
 
 /// Largest model that may be built beside the program and `other_bytes` (libraries, pictures), bytes; SurfaceSettings::max_bytes.
 std::int64_t model_bytes_left(const LimitSpec& limits, double other_bytes);
 
 /// Throws InputError where the call is expected to take more than its limits or the machine's memory allow (twice the time), with what
-/// would take less. `kinds`: representations that are modelled one after the other; empty: settings.kind. Returns what is expected; nothing
-/// where that is little and there is no limit, unless `always`.
+/// would take less. Returns what is expected; nothing where that is little and there is no limit, unless `models.always`.
 std::optional<CallCost> check_limits(const LimitSpec& limits, const Scene& scene, const SurfaceSettings& settings, const PictureLoad& load,
-                                     const std::vector<std::string>& kinds = {}, bool always = false);
+                                     const PlannedModels& models = {});
 
 /// Holds the process to its limits from here on. Memory: what it may allocate is limited, and where that runs out it ends
 /// with one line and exit code 1 (`goes_on`: std::bad_alloc is thrown instead). Throws InputError for less memory than it has already.

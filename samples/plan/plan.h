@@ -113,7 +113,9 @@ struct PlanAnswer {
 
 /// The series that a scene can search; empty where nothing of it has a resolution to choose (a mesh that is no cage). `notes` is told what
 /// was left out, and why; may be null.
-std::vector<ResolutionSeries> series_of_scene(const Scene& scene, const PlanSettings& settings, std::vector<std::string>* notes = nullptr);
+/// `cache`: of build_model, which then starts from the cages that were looked at; may be null.
+std::vector<ResolutionSeries> series_of_scene(const Scene& scene, const PlanSettings& settings, std::vector<std::string>* notes = nullptr,
+                                              ObjectMeshCache* cache = nullptr);
 
 /// Local models for the views: meshes of tolerances about that of the plan, and a series beside each of `uniform` that is of level sets.
 std::vector<ResolutionSeries> local_series(const Scene& scene, const std::vector<PlanView>& views, const PlanSettings& settings,

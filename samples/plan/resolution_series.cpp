@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "raymarch/surface/object_mesh.h"
 #include "samples/experiment/cost.h"
 #include "samples/plan/plan.h"
 #include "sdf/error.h"
@@ -69,25 +70,29 @@ double mean_edge(const Mesh& mesh, const Affine& world_from_mesh) {
 double first_ms(const ResolutionSeries& series, const SceneSize& size) { return expected_cost(size, series.at(0), 0.0).build_ms; }
 
 /// The longest of the objects' mean edges at level 0, since that one shows first, and what finding the cages took.
-void measure_cages(const Scene& scene, SceneSize& size, ResolutionSeries& series) {
+void measure_cages(const Scene& scene, SceneSize& size, ResolutionSeries& series, ObjectMeshCache& cache) {
   series.base_size = 0.0;
+  const glm::dvec3 render_origin = render_origin_of(scene);
+  make_starts(scene, cache);
+  double spared_ms = 0.0;
   const auto start = std::chrono::steady_clock::now();
   for (size_t k = 0; k < scene.objects.size(); ++k) {
     const SceneObject& object = scene.objects[k];
     if (const auto* field = std::get_if<Field>(&object.source)) {
-      const Mesh cage = cage_of(*field);
-      series.base_size = std::max(series.base_size, mean_edge(cage, {}));
-      size.objects[k].faces = static_cast<double>(cage.face_count());
+      const std::shared_ptr<const FieldCage> cage =
+          kept_cage(translate(*field, -render_origin), render_origin, cache.starts[k].get(), spared_ms);
+      series.base_size = std::max(series.base_size, mean_edge(mesh_of(*cage), {}));
+      size.objects[k].faces = static_cast<double>(mesh_of(*cage).face_count());
       size.objects[k].refines = true;
     } else if (const auto* mesh = std::get_if<MeshSource>(&object.source)) {
       series.base_size = std::max(series.base_size, mean_edge(mesh->mesh, object.world_from_object));
     }
   }
-  series.fixed_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  series.fixed_ms = spared_ms + std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   series.guess_ms = std::max(series.fixed_ms, first_ms(series, size));
 }
 
-ResolutionSeries mesh_series(const Scene& scene, SceneSize size) {
+ResolutionSeries mesh_series(const Scene& scene, SceneSize size, ObjectMeshCache& cache) {
   ResolutionSeries series;
   series.title = "mesh, limit normals";
   series.settings.kind = "mesh";
@@ -95,7 +100,7 @@ ResolutionSeries mesh_series(const Scene& scene, SceneSize size) {
   series.by_level = true;
   series.candidates = kLevelCandidates;
   series.normal_constant = kMeshConstant;
-  measure_cages(scene, size, series);
+  measure_cages(scene, size, series, cache);
   return series;
 }
 
@@ -170,7 +175,8 @@ std::string ResolutionSeries::words_at(size_t candidate) const {
 
 double BorderErrors::of(PlanMetric metric) const { return metric == PlanMetric::silhouette ? silhouette_px : border_px; }
 
-std::vector<ResolutionSeries> series_of_scene(const Scene& scene, const PlanSettings& settings, std::vector<std::string>* notes) {
+std::vector<ResolutionSeries> series_of_scene(const Scene& scene, const PlanSettings& settings, std::vector<std::string>* notes,
+                                              ObjectMeshCache* cache) {
   std::vector<ResolutionSeries> all_series;
   const bool fixed = std::any_of(scene.objects.begin(), scene.objects.end(), is_fixed);
   const bool volumes = std::any_of(scene.objects.begin(), scene.objects.end(),
@@ -187,7 +193,8 @@ std::vector<ResolutionSeries> series_of_scene(const Scene& scene, const PlanSett
   }
   if (!fixed && wanted("mesh", settings) && all_support(scene, "mesh")) {
     try {
-      all_series.push_back(mesh_series(scene, size));
+      ObjectMeshCache own;
+      all_series.push_back(mesh_series(scene, size, cache ? *cache : own));
     } catch (const InputError& error) {
       // A shape that cannot be tessellated may still be a level set.
       if (notes) notes->push_back(fmt::format("mesh left out: {}", error.fault().problem));

@@ -215,10 +215,12 @@ std::optional<size_t> cheapest_next(PlanSearch& search) {
 PlanAnswer make_plan(const Scene& scene, const std::vector<PlanView>& views, const PlanSettings& settings, const ExecutionSettings& how,
                      ProgressBar& bar, const std::vector<PlanTrial>& known) {
   LIMN_CHECK(!views.empty());
-  PlanSearch search{views, settings, bar, ExperimentRun(experiment_of(scene, views, settings), how, observer_of(search))};
+  Experiment experiment = experiment_of(scene, views, settings);
+  PlanAnswer answer;
+  answer.all_series = series_of_scene(scene, settings, &answer.notes, &experiment.meshes);
+  PlanSearch search{views, settings, bar, ExperimentRun(std::move(experiment), how, observer_of(search)), nullptr, std::move(answer)};
   for (size_t k = 0; k < views.size(); ++k) search.run.give_truth(k, {settings.threshold, views[k].truth, {}});
   search.answer.views = views.size();
-  search.answer.all_series = series_of_scene(scene, settings, &search.answer.notes);
   if (settings.local) {
     for (ResolutionSeries& local : local_series(scene, views, settings, search.answer.all_series))
       search.answer.all_series.push_back(std::move(local));

@@ -31,7 +31,7 @@ std::shared_ptr<Comparison> compare(const py::object& scene, const CallFields& f
     refuse_uncompared(settings.spec, input, *comparison);
     const ComparedModel& last = comparison->models.back();
     check_limits(settings.spec.limits, last.scene, last.surface,
-                 picture_load(comparison->camera, comparison->picture, {.writes_layers = true}));
+                 picture_load(comparison->camera, comparison->picture, {.writes_layers = true}), {.meshes = &comparison->meshes});
     ProgressBar none(false);
     draw_comparison(*comparison, folder, execution_of(settings.spec.threads, stopped), none);
     return comparison;

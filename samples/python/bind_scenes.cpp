@@ -169,18 +169,20 @@ std::shared_ptr<const ModelOfPython> model_for(const Source& source, CallSetting
   const Camera camera =
       camera_of_view(camera_settings(spec.camera, input), model->framed, framing_settings(spec.camera), settings.view, spec.views);
   model->local_px = settings.local_px.value_or(0.0);
+  ObjectMeshCache meshes;
   // A local level set says itself when it needs too much: what it takes is not known before.
   if (!settings.local_px || !has_local_bricks(model->settings.kind))
-    check_limits(spec.limits, input.scene, model->settings, picture_load(camera, picture_settings(spec.border, input), {}));
-  if (spec.surface.level_for_view) model->notes = refine_for_views(model->settings, {&camera, 1}, input.scene);
+    check_limits(spec.limits, input.scene, model->settings, picture_load(camera, picture_settings(spec.border, input), {}),
+                 {.meshes = &meshes});
+  if (spec.surface.level_for_view) model->notes = refine_for_views(model->settings, {&camera, 1}, input.scene, &meshes);
   model->mostly_flat = input.kind != InputKind::built_in && flat_share(input.scene, model->settings) > kMostlyFlat;
   // Once, for however many pictures.
   const std::vector<std::string> found = warnings_of(input.scene, model->settings, {.methods = names_of(method_calls(spec.border, input))});
   model->warnings.insert(model->warnings.end(), found.begin(), found.end());
   model->model = settings.local_px
                      ? build_local_model(input.scene, model->settings,
-                                         local_settings(*settings.local_px, false, method_calls(spec.border, input), {camera}))
-                     : build_model(input.scene, model->settings);
+                                         local_settings(*settings.local_px, false, method_calls(spec.border, input), {camera}), &meshes)
+                     : build_model(input.scene, model->settings, &meshes);
   model->settings.progress = {};
   const SurfaceInfo info = total(model->model);
   model->warnings.insert(model->warnings.end(), info.warnings.begin(), info.warnings.end());

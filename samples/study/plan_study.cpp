@@ -323,11 +323,13 @@ Study plan_study(const StudySpec& spec, SceneInput input) {
   for (SceneObject& object : input.scene.objects) object.level.reset();
   given.input_hash = hash_of_input(input);
   refuse_reference_without_effect(spec.experiment, input);
-  given.size = size_of(input.scene, given.settings);
+  ObjectMeshCache meshes;
+  given.size = size_of(input.scene, given.settings, true, &meshes);
   DefaultAxes defaults;
   Study study = plan_with(given, defaults);
   while (expected_ms(study) > kDefaultStudy_ms && shrink(spec.sweep, defaults)) study = plan_with(given, defaults);
   name_cells(study);
+  study.meshes = std::move(meshes);
   return study;
 }
 

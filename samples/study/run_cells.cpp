@@ -75,6 +75,7 @@ Experiment experiment_of(const Study& study) {
   if (study.flicker) experiment.path = kFlickerPath;
   experiment.repeats = kStudyRepeats;
   experiment.share_meshes = true;
+  experiment.meshes = study.meshes;
   experiment.reference = study.truth_reference;
   experiment.waiting_bytes = study.waiting_bytes;
   return experiment;

@@ -93,7 +93,9 @@ void calibrate(const StudyWork& work, CostLedger& ledger) {
     if (planned == nullptr || planned->cost.build_ms > kCheap_ms) continue;
     try {
       auto start = Clock::now();
-      const SceneModel model = build_model(work.study.scene, planned->settings);
+      // As in the study, where meshes start from what is found.
+      ObjectMeshCache meshes{.kept = {}, .starts = work.study.meshes.starts};
+      const SceneModel model = build_model(work.study.scene, planned->settings, &meshes);
       ledger.learn("build " + surface, planned->cost.build_ms, ms_since(start));
       start = Clock::now();
       render_gbuffer(model, camera, work.how);

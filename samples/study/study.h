@@ -65,6 +65,7 @@ struct Study {
   bool flicker = false;                                    ///< Flicker is measured, too.
   double waiting_bytes = 128e6;                            ///< See Experiment. 0 where memory is limited.
   StudyHead head{};                                        ///< What the folder says of it.
+  ObjectMeshCache meshes{};                                ///< What meshes start from, found to tell what they take.
   double longest_side = 0.0;                               ///< World, of the scene.
   double border_faces = 0.0;                               ///< See border_faces(): what truths and measurements take grows with it.
 

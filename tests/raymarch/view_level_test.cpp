@@ -6,6 +6,7 @@
 #include "raymarch/surface/object_mesh.h"
 #include "raymarch/surface/view_level.h"
 #include "subdiv/mesh_level_set.h"
+#include "subdiv/tessellate.h"
 #include "tests/raymarch/scenes.h"
 
 namespace limn::test {
@@ -145,6 +146,71 @@ TEST(ViewLevel, KeepsToTheMemoryAndSaysSo) {
   EXPECT_GT(chosen.deviation_px, 1e-4);
   EXPECT_LE(predict_refined_size(std::get<MeshSource>(object.source).mesh, Scheme::catmark, chosen.level).bytes, 200'000);
   EXPECT_GT(predict_refined_size(std::get<MeshSource>(object.source).mesh, Scheme::catmark, chosen.level + 1).bytes, 200'000);
+}
+
+TEST(ViewLevel, OfAFieldKeepsToTheMemoryAndSaysSo) {
+  const SceneObject object = object_of(make_shape("sphere"));
+  SurfaceSettings settings = surface_kind("mesh");
+  const Mesh cage = cage_of(std::get<Field>(object.source));
+  settings.max_bytes = predict_refined_size(cage, Scheme::bilinear, 1).bytes;
+  const Camera camera = looking(object, {1, 2, 3}, 3.0, Projection::perspective);
+  const ViewLevel chosen = level_for_views(object, settings, {&camera, 1}, 1e-4);
+  EXPECT_EQ(chosen.level, 1);
+  EXPECT_EQ(chosen.limit, "a finer one would not fit into memory");
+  EXPECT_GT(chosen.deviation_px, 1e-4);
+}
+
+// Each place asked of the whole field by itself.
+TEST(ViewLevel, OfAFieldIsTheLargestDeviationThatItSays) {
+  SceneObject object = object_of(make_shape("gyroid"));
+  const glm::dvec3 render_origin(0.3, -0.2, 0.1);
+  const Camera camera = looking(object, {3, 2, 1}, 12.0, Projection::perspective);
+  const ViewLevel chosen = level_for_views(object, surface_kind("mesh"), {&camera, 1}, 4.0, render_origin);
+  const Field& field = std::get<Field>(object.source);
+  const Mesh mesh = tessellate(translate(field, -render_origin), {.level = chosen.level, .normals = NormalKind::flat});
+  FieldEvaluator evaluator(field);
+  double largest = 0.0;
+  size_t first = 0;
+  for (const std::int32_t size : mesh.face_sizes) {
+    const auto at = [&](size_t k) {
+      return mesh.positions[static_cast<size_t>(mesh.corner_vertices[first + k % static_cast<size_t>(size)])] + render_origin;
+    };
+    glm::dvec3 middle(0.0);
+    std::vector<glm::dvec3> points;
+    for (size_t k = 0; k < static_cast<size_t>(size); ++k) {
+      middle += at(k) / static_cast<double>(size);
+      points.push_back(0.5 * (at(k) + at(k + 1)));
+    }
+    points.push_back(middle);
+    for (const glm::dvec3& point : points) {
+      const glm::dvec3 px = project(camera, point);
+      const bool seen = px.z > 0.0 && px.x > 0.0 && px.y > 0.0 && px.x < camera.width_px && px.y < camera.height_px;
+      const FieldJet jet = evaluator.jet(point);
+      if (seen) largest = std::max(largest, std::abs(jet.value) / glm::length(jet.gradient) * pixels_per_unit_at(camera, px.z));
+    }
+    first += static_cast<size_t>(size);
+  }
+  EXPECT_GT(largest, 0.0);
+  EXPECT_NEAR(chosen.deviation_px, largest, 1e-9 * largest);
+}
+
+// What was found on the way to a level is where the model starts.
+TEST(ViewLevel, OfAFieldLeavesItsCageToTheModel) {
+  Scene scene = scene_of({object_of(make_shape("superellipsoid"))});
+  std::get<Field>(scene.objects[0].source) = translate(std::get<Field>(scene.objects[0].source), glm::dvec3(5.0, 0.0, -2.0));
+  const Camera camera = framing(scene, view(200, 200));
+  Scene alone = scene;
+  ObjectMeshCache cache;
+  refine_for_views(surface_kind("mesh"), {&camera, 1}, scene, &cache);
+  refine_for_views(surface_kind("mesh"), {&camera, 1}, alone);
+  ASSERT_EQ(scene.objects[0].level, alone.objects[0].level);
+  ASSERT_EQ(cache.starts.size(), 1u);
+  const std::shared_ptr<const FieldCage> found = cache.starts[0]->cage;
+  ASSERT_TRUE(found);
+  const SceneModel model = build_model(scene, surface_kind("mesh"), &cache), anew = build_model(scene, surface_kind("mesh"));
+  EXPECT_EQ(cache.starts[0]->cage, found);
+  EXPECT_EQ(model.surfaces[0].polygons->mesh().positions, anew.surfaces[0].polygons->mesh().positions);
+  EXPECT_EQ(model.surfaces[0].polygons->mesh().corner_vertices, anew.surfaces[0].polygons->mesh().corner_vertices);
 }
 
 TEST(ViewLevel, IsSetWhereAMeshIsMadeAndNowhereElse) {

@@ -6,8 +6,13 @@
 
 #include <cmath>
 
+#include "raymarch/surface/object_mesh.h"
+#include "samples/experiment/cost.h"
 #include "samples/experiment/job.h"
+#include "samples/experiment/limits.h"
 #include "samples/scenes/scenes.h"
+#include "sdf/error.h"
+#include "subdiv/tessellate.h"
 
 namespace limn {
 namespace {
@@ -69,6 +74,38 @@ TEST(Experiment, ModelsThatWaitAreMeasuredAsThoseThatDoNot) {
       EXPECT_TRUE(a == b || (std::isnan(a) && std::isnan(b))) << "cell " << cell << ", value " << k << ": " << a << " and " << b;
     }
   }
+}
+
+// A call is told what it takes from the cage of a field; whatever is looked at for that, and the models, start from the same one.
+TEST(Experiment, ModelsStartFromTheCageThatACallIsJudgedBy) {
+  Experiment experiment;
+  experiment.scene = find_scene("superellipsoid")->make();
+  const SurfaceSettings settings{.kind = "mesh", .level = 1};
+  EXPECT_THROW(check_limits({.max_memory = 1'000'000}, experiment.scene, settings, {}, {.meshes = &experiment.meshes}), InputError);
+  ASSERT_EQ(experiment.meshes.starts.size(), 1u);
+  const std::shared_ptr<const FieldCage> cage = experiment.meshes.starts[0]->cage;
+  ASSERT_TRUE(cage);
+  const double faces = size_of(experiment.scene, settings, true, &experiment.meshes).objects[0].faces;
+  EXPECT_EQ(faces, static_cast<double>(mesh_of(*cage).face_count()));
+  EXPECT_EQ(faces, size_of(experiment.scene, settings).objects[0].faces);
+  CameraSettings camera = experiment.scene.camera;
+  camera.width_px = 32, camera.height_px = 24;
+  experiment.cameras = {camera_of_view(camera, {bounds(experiment.scene), {}}, {}, 0, 1)};
+  for (const char* kind : {"analytic", "mesh"})
+    experiment.models.push_back({.title = kind, .scene = experiment.scene, .settings = {.kind = kind, .level = 1}});
+  const BorderMethod& rim = find_border_method("rim");
+  experiment.methods.push_back({"rim", {{&rim, resolve(rim.parameters, {})}}, 0.4});
+  experiment.share_meshes = true;
+  std::int64_t triangles = 0;
+  ExperimentObserver observer;
+  observer.built = [&](size_t model, const SceneModel& built, double, const Timing&) {
+    if (model == 1) triangles = total(built).triangles;
+  };
+  ExperimentRun run(experiment, {}, observer);
+  const ExperimentCell cell{1, 0, 0, 0};
+  run.run({&cell, 1});
+  EXPECT_EQ(run.meshes().starts[0]->cage, cage);
+  EXPECT_EQ(triangles, total(build_model(experiment.scene, settings)).triangles);
 }
 
 }  // namespace

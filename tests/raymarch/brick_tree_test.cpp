@@ -53,7 +53,9 @@ SingleRayBricks two_bricks(const BentPlane& plane, bool upper_first) {
   return for_single_rays(bricks, Affine{});
 }
 
-std::vector<Answer> answers(const SingleRayBricks& bricks, const BrickTree& tree, int face, std::span<const glm::dvec2> places) {
+/// Downwards from kAbove over z = `face`, through the places, into the bricks of all sizes.
+std::vector<Answer> answers(std::span<const BrickTrace> sizes, std::span<const BrickTree* const> trees, int face,
+                            std::span<const glm::dvec2> places) {
   RayBatch rays;
   HitBatch found;
   // Packets are whole: lanes without a ray are idle.
@@ -64,13 +66,19 @@ std::vector<Answer> answers(const SingleRayBricks& bricks, const BrickTree& tree
     rays.set(i, {place, face + kAbove}, {0.0, 0.0, -1.0}, 0.0, idle ? -1.0 : 100.0);
   }
   std::fill_n(found.status, kRayBatchSize, HitStatus::miss);
-  const BrickTrace how{.view = &bricks.outside, .gradient = BrickGradient::cell};
-  const BrickTree* const trees[] = {&tree};
-  trace_bricks_singly({&how, 1}, trees, rays, found);
+  trace_bricks_singly(sizes, trees, rays, found);
   std::vector<Answer> result(places.size());
   for (size_t i = 0; i < places.size(); ++i)
     if (found.status[i] == HitStatus::hit) result[i] = {1, found.t[i], {found.normal_x[i], found.normal_y[i], found.normal_z[i]}};
   return result;
+}
+
+BrickTrace trace_of(const SingleRayBricks& bricks) { return {.view = &bricks.outside, .gradient = BrickGradient::cell}; }
+
+std::vector<Answer> answers(const SingleRayBricks& bricks, const BrickTree& tree, int face, std::span<const glm::dvec2> places) {
+  const BrickTrace how = trace_of(bricks);
+  const BrickTree* const trees[] = {&tree};
+  return answers({&how, 1}, trees, face, places);
 }
 
 BrickTree alone(const BrickTree& tree, std::int32_t brick) {
@@ -117,6 +125,61 @@ TEST(BrickTree, OfRootsAtOneDepthTheFirstBricksCountsWhicheverIsLookedAtFirst) {
     }
   }
   EXPECT_GT(ties, 20);  // One draw in eleven has a hundred.
+}
+
+/// One brick from the origin on, with voxels of that size, of a plane that is `height` above z = 0 at y = `line` and rises from there.
+struct TiltedPlane {
+  double voxel = 1.0, height = 0.0, line = 0.0, slope = 0.0;
+
+  static std::int16_t one(const void* self, const glm::ivec3& node, const void*&) {
+    const TiltedPlane& plane = *static_cast<const TiltedPlane*>(self);
+    const double value = plane.voxel * node.z - plane.height - plane.slope * (plane.voxel * node.y - plane.line);
+    return quantised(static_cast<float>(value), kStepsPerUnit);
+  }
+  static void read(const void* self, size_t, const glm::ivec3& origin, NodeSteps& steps) {
+    const void* last = nullptr;
+    for (int k = 0; k < 729; ++k)
+      steps[static_cast<size_t>(brick_element(k / 81, k / 9 % 9, k % 9))] = one(self, origin + glm::ivec3(k / 81, k / 9 % 9, k % 9), last);
+  }
+};
+
+SingleRayBricks brick_of(const TiltedPlane& plane) {
+  const BrickPlace place{};
+  const std::shared_ptr<RayBricks> bricks = make_bricks({&plane, TiltedPlane::read, TiltedPlane::one}, {&place, 1}, kStepsPerUnit);
+  bricks->voxel_size = plane.voxel;
+  return for_single_rays(bricks, {glm::dmat3(1.0 / plane.voxel), glm::dvec3(0.0)});
+}
+
+// As on the faces between two sizes, where both have the same surface and their gradients differ.
+TEST(BrickTree, OfRootsAtOneDepthThatOfTheLargestVoxelsCounts) {
+  std::mt19937 random(random_seed());
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  int ties = 0;
+  for (int draw = 0; draw < 300; ++draw) {
+    const double height = 1.0 + 5.0 * part(random), line = 2.0 + 4.0 * part(random);
+    std::vector<SingleRayBricks> bricks;
+    std::vector<BrickTrace> sizes;
+    std::vector<const BrickTree*> trees;
+    for (const double voxel : {1.0, 2.0, 8.0}) bricks.push_back(brick_of({voxel, height, line, 0.01 * (part(random) - 0.5)}));
+    for (const SingleRayBricks& one : bricks) sizes.push_back(trace_of(one)), trees.push_back(&one.tree);
+    // Quantised values take the planes' meeting off the line by up to a tenth of a voxel.
+    std::vector<glm::dvec2> places;
+    for (int k = 0; k < 250; ++k) places.emplace_back(3.0 + part(random), line + 0.1 * (part(random) - 0.5));
+    const std::vector<Answer> together = answers(sizes, trees, 0, places);
+    std::vector<std::vector<Answer>> alone;
+    for (size_t k = 0; k < sizes.size(); ++k) alone.push_back(answers({&sizes[k], 1}, {&trees[k], 1}, 0, places));
+    for (size_t i = 0; i < places.size(); ++i) {
+      size_t nearest = 0;
+      for (size_t k = 0; k < alone.size(); ++k) {
+        ASSERT_NE(alone[k][i].hit, 0);
+        ties += k > 0 && alone[k][i].t == alone[nearest][i].t && !(alone[k][i] == alone[nearest][i]);
+        if (alone[k][i].t <= alone[nearest][i].t) nearest = k;
+      }
+      ASSERT_TRUE(together[i] == alone[nearest][i]) << "draw " << draw << ", ray " << i << ": t " << together[i].t << ", alone "
+                                                    << alone[0][i].t << ", " << alone[1][i].t << " and " << alone[2][i].t;
+    }
+  }
+  EXPECT_GT(ties, 50);
 }
 
 }  // namespace

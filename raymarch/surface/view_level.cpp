@@ -174,27 +174,26 @@ double field_deviation_px(const Field& field, const Mesh& mesh, const Pictures& 
   return deviations.empty() ? 0.0 : *std::max_element(deviations.begin(), deviations.end());
 }
 
-/// `field` and the cameras of `pictures` in render space.
-ViewLevel level_of_field(const Field& field, const SurfaceSettings& settings, const glm::dvec3& render_origin, const Pictures& pictures,
+/// `pictures` are those of cameras in render space. The last mesh is that of the level, which the model takes where it is kept.
+ViewLevel level_of_field(const Field& source, SurfaceSettings settings, const glm::dvec3& render_origin, const Pictures& pictures,
                          double tolerance_px) {
-  KeptStart own;
-  KeptStart& start = settings.kept_start ? *settings.kept_start : own;
-  double spared_ms = 0.0, before = std::numeric_limits<double>::infinity();
-  TessellateSettings how{.normals = NormalKind::flat, .max_bytes = settings.max_bytes};
-  how.cage = kept_cage(field, render_origin, &start, spared_ms);
-  how.refinements = &start.refinements;
-  for (how.level = 0;; ++how.level) {
-    const Mesh mesh = tessellate(field, how);
-    const double deviation = field_deviation_px(field, mesh, pictures);
-    if (deviation <= tolerance_px) return {how.level, deviation, {}};
-    const double next = 4.0 * static_cast<double>(mesh.face_count());
-    if (how.level == kFinest) return {how.level, deviation, "it is the finest level"};
-    if (predict_refined_size(mesh_of(*how.cage), Scheme::bilinear, how.level + 1).bytes > settings.max_bytes)
-      return {how.level, deviation, "a finer one would not fit into memory"};
+  SceneObject object{.name = "field", .source = source};
+  const Field field = translate(source, -render_origin);
+  if (!settings.kept_start) settings.kept_start = std::make_shared<KeptStart>();
+  double before = std::numeric_limits<double>::infinity();
+  for (int level = 0;; ++level) {
+    object.level = level;
+    const std::shared_ptr<const Polygons> polygons = object_mesh(object, settings, render_origin).polygons;
+    const double deviation = field_deviation_px(field, polygons->mesh(), pictures);
+    if (deviation <= tolerance_px) return {level, deviation, {}};
+    const double next = 4.0 * static_cast<double>(polygons->mesh().face_count());
+    if (level == kFinest) return {level, deviation, "it is the finest level"};
+    if (predict_refined_size(mesh_of(*settings.kept_start->cage), Scheme::bilinear, level + 1).bytes > settings.max_bytes)
+      return {level, deviation, "a finer one would not fit into memory"};
     if (2.0 * next > kMostTrianglesPerPixel * std::max(pictures.pixels(), 1e4))
-      return {how.level, deviation, "a finer one would have more than four triangles a pixel"};
+      return {level, deviation, "a finer one would have more than four triangles a pixel"};
     // As at sharp edges that no vertex lies on.
-    if (how.level >= 4 && deviation > 0.8 * before) return {how.level, deviation, "a finer one is hardly nearer"};
+    if (level >= 4 && deviation > 0.8 * before) return {level, deviation, "a finer one is hardly nearer"};
     before = deviation;
   }
 }
@@ -204,10 +203,10 @@ ViewLevel level_of_field(const Field& field, const SurfaceSettings& settings, co
 ViewLevel level_for_views(const SceneObject& object, const SurfaceSettings& settings, std::span<const Camera> cameras, double deviation_px,
                           const glm::dvec3& render_origin) {
   LIMN_CHECK(deviation_px > 0.0 && !cameras.empty());
-  if (const Field* field = std::get_if<Field>(&object.source)) {
+  if (const Field* const field = std::get_if<Field>(&object.source)) {
     std::vector<Camera> in_render(cameras.begin(), cameras.end());
     for (Camera& camera : in_render) camera = moved(camera, render_origin);
-    return level_of_field(translate(*field, -render_origin), settings, render_origin, {in_render}, deviation_px);
+    return level_of_field(*field, settings, render_origin, {in_render}, deviation_px);
   }
   const MeshSource* source = std::get_if<MeshSource>(&object.source);
   const std::optional<Scheme> scheme = !source ? std::nullopt : settings.scheme ? settings.scheme : source->scheme;
@@ -232,12 +231,12 @@ std::vector<std::string> refine_for_views(const SurfaceSettings& settings, std::
                                           ObjectMeshCache* cache) {
   std::vector<std::string> notes;
   const glm::dvec3 render_origin = render_origin_of(scene);
-  if (cache) make_starts(scene, *cache);
+  if (cache) make_starts(scene, *cache), cache->kept.resize(scene.objects.size());
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     SceneObject& object = scene.objects[i];
     if (!has_levels(object, settings)) continue;
     SurfaceSettings own = settings;
-    if (cache) own.kept_start = cache->starts[i];
+    if (cache) own.kept_start = cache->starts[i], own.kept_mesh = &cache->kept[i];
     const ViewLevel chosen = level_for_views(object, own, cameras, kViewDeviation_px, render_origin);
     object.level = chosen.level;
     // At level 0 nothing was compared.

@@ -23,8 +23,9 @@ struct ViewLevel {
 /// `deviation_px` in each of the cameras' pictures; what lies outside of them or behind the eye does not count. A cage's deviation is that
 /// of the finer meshes' vertices, all of which lie on the limit surface, from its faces; from the finest that was looked at on it falls
 /// as it fell before, no faster than fourfold. A field's is measured at the middles of faces and edges. No finer than settings.max_bytes
-/// allows, than four triangles for each pixel, and than it helps. `render_origin` (world): that of the model to come, which starts from
-/// what is kept in settings.kept_start, where there is one. Throws InputError as refine() and tessellate() do.
+/// allows, than four triangles for each pixel, and than it helps. `render_origin` (world): that of the model to come, which takes a
+/// field's mesh from settings.kept_mesh and starts from settings.kept_start, where there are such. Throws InputError as refine() and
+/// tessellate() do.
 ViewLevel level_for_views(const SceneObject& object, const SurfaceSettings& settings, std::span<const Camera> cameras,
                           double deviation_px = kViewDeviation_px, const glm::dvec3& render_origin = glm::dvec3(0.0));
 

@@ -195,7 +195,7 @@ TEST(ViewLevel, OfAFieldIsTheLargestDeviationThatItSays) {
 }
 
 // What was found on the way to a level is where the model starts.
-TEST(ViewLevel, OfAFieldLeavesItsCageToTheModel) {
+TEST(ViewLevel, OfAFieldLeavesItsMeshToTheModel) {
   Scene scene = scene_of({object_of(make_shape("superellipsoid"))});
   std::get<Field>(scene.objects[0].source) = translate(std::get<Field>(scene.objects[0].source), glm::dvec3(5.0, 0.0, -2.0));
   const Camera camera = framing(scene, view(200, 200));
@@ -207,8 +207,11 @@ TEST(ViewLevel, OfAFieldLeavesItsCageToTheModel) {
   ASSERT_EQ(cache.starts.size(), 1u);
   const std::shared_ptr<const FieldCage> found = cache.starts[0]->cage;
   ASSERT_TRUE(found);
+  ASSERT_TRUE(cache.kept[0]);
+  const std::shared_ptr<const Polygons> polygons = cache.kept[0]->mesh.polygons;
   const SceneModel model = build_model(scene, surface_kind("mesh"), &cache), anew = build_model(scene, surface_kind("mesh"));
   EXPECT_EQ(cache.starts[0]->cage, found);
+  EXPECT_EQ(model.surfaces[0].polygons, polygons);
   EXPECT_EQ(model.surfaces[0].polygons->mesh().positions, anew.surfaces[0].polygons->mesh().positions);
   EXPECT_EQ(model.surfaces[0].polygons->mesh().corner_vertices, anew.surfaces[0].polygons->mesh().corner_vertices);
 }

@@ -152,15 +152,13 @@ struct Search {
   IndexRays rays;  ///< By the index coordinates of the size that is searched.
   BrickHits found;
   Waiting waiting;
-  alignas(64) float t[kRayBatchSize];            ///< Of all sizes, where there are several.
-  alignas(64) std::int32_t cell[kRayBatchSize];  ///< The same.
+  alignas(64) std::int32_t cell[kRayBatchSize];  ///< Of all sizes.
   alignas(64) std::int32_t size[kRayBatchSize];  ///< Whose cell it is.
 };
 
 void start(const RayBatch& rays, Search& search) {
   const auto count = static_cast<size_t>(rays.count);
   std::copy_n(rays.t_max, count, search.found.t);
-  std::copy_n(rays.t_max, count, search.t);
   std::fill_n(search.found.cell, count, -1);
   std::fill_n(search.cell, count, -1);
   std::fill_n(search.size, count, -1);
@@ -264,28 +262,13 @@ HWY_NOINLINE void search_tree(const BrickTrace& what, const BrickTree& tree, con
   }
 }
 
-/// The next number below.
-HWY_INLINE VF just_before(VF t) {
-  const I di;
-  const VI bits = hn::BitCast(di, t), one = hn::Set(di, 1);
-  const auto positive = hn::RebindMask(di, hn::Gt(t, hn::Zero(F()))), negative = hn::RebindMask(di, hn::Lt(t, hn::Zero(F())));
-  constexpr auto kBelowZero = static_cast<std::int32_t>(0x8000'0001u);
-  return hn::BitCast(F(),
-                     hn::IfThenElse(positive, hn::Sub(bits, one), hn::IfThenElse(negative, hn::Add(bits, one), hn::Set(di, kBelowZero))));
-}
-
-/// Roots found last lie nearer than those of the sizes before. From here on only what is nearer still counts: of roots at the same place,
-/// on a face between two sizes, that of the larger voxels.
+/// Roots found last lie nearer than those of the sizes before, or on a face with one of smaller voxels.
 void take(std::int32_t size, size_t count, Search& search) {
-  const F d;
   const I di;
   const VI none = hn::Set(di, -1);
   for (size_t i = 0; i < count; i += hn::Lanes(di)) {
     const VI cell = hn::Load(di, search.found.cell + i);
     const auto found = hn::Gt(cell, none);
-    const VF t = hn::Load(d, search.found.t + i);
-    hn::BlendedStore(t, hn::RebindMask(d, found), d, search.t + i);
-    hn::BlendedStore(just_before(t), hn::RebindMask(d, found), d, search.found.t + i);
     hn::BlendedStore(cell, found, di, search.cell + i);
     hn::BlendedStore(hn::Set(di, size), found, di, search.size + i);
     hn::Store(none, di, search.found.cell + i);
@@ -303,7 +286,6 @@ HWY_INLINE bool select(std::int32_t size, size_t i, Search& search) {
 
 void write(const BrickTrace* sizes, size_t number, const RayBatch& rays, Search& search, HitBatch& hits) {
   const size_t count = static_cast<size_t>(rays.count), lanes = hn::Lanes(F());
-  if (number > 1) std::copy_n(search.t, count, search.found.t);
   for (size_t k = 0; k < number; ++k) {
     if (!sizes[k].view->groups) continue;
     for (size_t i = 0; i < count; i += lanes) {
@@ -321,8 +303,7 @@ void TraceBricks(const BrickTrace* sizes, size_t number, const BrickTree* const*
   Search search;
   const auto count = static_cast<size_t>(rays.count);
   start(rays, search);
-  // The largest voxels first: most of what is seen lies in them, and hides smaller ones.
-  for (size_t k = number; k-- > 0;) {
+  for (size_t k = 0; k < number; ++k) {
     const BrickView& view = *sizes[k].view;
     if (!view.groups || (!trees && !touches(view, tile))) continue;
     to_index_space(view.index_from_render, rays, 0, count, search.rays);

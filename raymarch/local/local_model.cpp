@@ -4,6 +4,7 @@
 #include "raymarch/local/local_mesh.h"
 #include "raymarch/local/local_sources.h"
 #include "raymarch/local_model.h"
+#include "raymarch/surface/model_parts.h"
 #include "raymarch/surface/object_mesh.h"
 
 namespace limn {
@@ -139,7 +140,7 @@ SceneModel build_local_model(const Scene& scene, const SurfaceSettings& settings
   own.kept_mesh = nullptr;
   // build_model takes the meshes as it takes those of an earlier model.
   ObjectMeshCache made;
-  if (cache) make_starts(scene, *cache);
+  if (cache) make_places(scene, *cache);
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
     if (cache) own.kept_start = cache->starts[i];

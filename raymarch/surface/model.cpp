@@ -39,8 +39,7 @@ SceneModel build_model(const Scene& scene, const SurfaceSettings& settings, Obje
   check_extent(scene);
   SceneModel model;
   if (cache) {
-    cache->kept.resize(scene.objects.size());
-    make_starts(scene, *cache);
+    make_places(scene, *cache);
   }
   model.bounds = bounds(scene);
   model.render_origin = render_origin_of(scene);
@@ -58,6 +57,11 @@ SceneModel build_model(const Scene& scene, const SurfaceSettings& settings, Obje
     append_surface(object, build_surface(object, own, model.render_origin), model);
   }
   return model;
+}
+
+glm::dvec3 render_origin_of(const Scene& scene) {
+  const Box box = bounds(scene);
+  return box.empty() ? glm::dvec3(0.0) : box.center();
 }
 
 void append_surface(const SceneObject& object, Surface surface, SceneModel& model) {

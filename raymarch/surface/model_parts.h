@@ -9,4 +9,7 @@ namespace limn {
 /// mesh, a grid's cells.
 void append_surface(const SceneObject& object, Surface surface, SceneModel& model);
 
+/// Where the models of a scene have their origin, world.
+glm::dvec3 render_origin_of(const Scene& scene);
+
 }  // namespace limn

@@ -218,15 +218,11 @@ std::shared_ptr<const FieldCage> kept_cage(const Field& field, const glm::dvec3&
   return kept->cage;
 }
 
-void make_starts(const Scene& scene, ObjectMeshCache& cache) {
+void make_places(const Scene& scene, ObjectMeshCache& cache) {
+  cache.kept.resize(scene.objects.size());
   cache.starts.resize(scene.objects.size());
   for (std::shared_ptr<KeptStart>& start : cache.starts)
     if (!start) start = std::make_shared<KeptStart>();
-}
-
-glm::dvec3 render_origin_of(const Scene& scene) {
-  const Box box = bounds(scene);
-  return box.empty() ? glm::dvec3(0.0) : box.center();
 }
 
 SurfaceSettings keeping_mesh(SurfaceSettings settings, const Scene& scene, ObjectMeshCache* cache) {

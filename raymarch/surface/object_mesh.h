@@ -69,11 +69,8 @@ struct KeptStart {
 /// took is added to `spared_ms`. `kept` may be null.
 std::shared_ptr<const FieldCage> kept_cage(const Field& field, const glm::dvec3& render_origin, KeptStart* kept, double& spared_ms);
 
-/// One for each object of the scene.
-void make_starts(const Scene& scene, ObjectMeshCache& cache);
-
-/// Where the models of a scene have their origin, world.
-glm::dvec3 render_origin_of(const Scene& scene);
+/// For each object of the scene one for its mesh, and one for what that starts from.
+void make_places(const Scene& scene, ObjectMeshCache& cache);
 
 /// A mesh in an ObjectMeshCache, and all that it depends on beside the object.
 struct KeptMesh {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raymarch/surface/model_parts.h"
 #include "raymarch/surface/object_mesh.h"
 #include "sdf/error.h"
 #include "sdf/field.h"
@@ -231,7 +232,7 @@ std::vector<std::string> refine_for_views(const SurfaceSettings& settings, std::
                                           ObjectMeshCache* cache) {
   std::vector<std::string> notes;
   const glm::dvec3 render_origin = render_origin_of(scene);
-  if (cache) make_starts(scene, *cache), cache->kept.resize(scene.objects.size());
+  if (cache) make_places(scene, *cache);
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     SceneObject& object = scene.objects[i];
     if (!has_levels(object, settings)) continue;

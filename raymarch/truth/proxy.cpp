@@ -3,7 +3,6 @@
 
 #include "raymarch/truth/proxy.h"
 #include "raymarch/surface/model_parts.h"
-#include "raymarch/surface/object_mesh.h"
 
 #include <fmt/format.h>
 

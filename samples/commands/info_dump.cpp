@@ -7,6 +7,7 @@
 #include "raymarch/level_set/brick_text.h"
 #include "raymarch/scene/scene_extent.h"
 #include "raymarch/surface.h"
+#include "raymarch/surface/model_parts.h"
 #include "samples/commands/common.h"
 #include "samples/experiment/job.h"
 #include "samples/experiment/no_effect.h"
@@ -65,8 +66,7 @@ std::string dump_text(const Options& options, SceneInput input) {
   refuse_undumped(options.spec.surface, input, kinds);
   check_extent(scene);
   if (dump.what == "bricks") check_cost(options, scene, settings, {}, {.kinds = different(kinds)});
-  const Box all = bounds(scene);
-  const glm::dvec3 origin = all.empty() ? glm::dvec3(0.0) : all.center();
+  const glm::dvec3 origin = render_origin_of(scene);
   std::string text = fmt::format("render_origin: [{} {} {}]\n", origin.x, origin.y, origin.z);
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     settings.kind = kinds[i];

@@ -131,6 +131,7 @@ struct Keeper {
 void draw_comparison(Comparison& comparison, const std::filesystem::path& folder, const ExecutionSettings& how, ProgressBar& bar) {
   Keeper keeper{comparison, folder, bar};
   ExperimentRun run(experiment_of(comparison), how, keeper.observer());
+  comparison.meshes = {};  // the run's now, which lets them go
   for (size_t row = 0; row < comparison.models.size(); ++row) {
     std::vector<ExperimentCell> cells;
     for (size_t column = 0; column < comparison.methods.size(); ++column) cells.push_back({row, 0, column});

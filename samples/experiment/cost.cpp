@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "raymarch/level_set/level_set_marcher.h"
+#include "raymarch/surface/model_parts.h"
 #include "raymarch/surface/object_mesh.h"
 #include "samples/input/scene_facts.h"
 #include "samples/output/output.h"
@@ -197,7 +198,7 @@ void add_grid(const SceneSize::Object& object, const SurfaceSettings& settings, 
 
 SceneSize size_of(const Scene& scene, const SurfaceSettings& settings, bool with_cages, ObjectMeshCache* cache) {
   const glm::dvec3 render_origin = render_origin_of(scene);
-  if (cache) make_starts(scene, *cache);
+  if (cache) make_places(scene, *cache);
   SceneSize size;
   for (size_t i = 0; i < scene.objects.size(); ++i)
     size.objects.push_back(size_of(scene.objects[i], settings, with_cages, render_origin, cache ? cache->starts[i].get() : nullptr));

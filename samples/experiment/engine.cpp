@@ -37,7 +37,7 @@ bool same_view(const ExperimentCell& a, const ExperimentCell& b) { return a.view
 }  // namespace
 
 ExperimentRun::ExperimentRun(Experiment experiment, const ExecutionSettings& how, ExperimentObserver observer)
-    : experiment_(std::move(experiment)), how_(how), observer_(std::move(observer)), meshes_(experiment_.meshes) {}
+    : experiment_(std::move(experiment)), how_(how), observer_(std::move(observer)), meshes_(std::move(experiment_.meshes)) {}
 ExperimentRun::~ExperimentRun() = default;
 
 std::function<void(double)> ExperimentRun::stage(const std::string& what) const {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "raymarch/surface/model_parts.h"
 #include "raymarch/surface/object_mesh.h"
 #include "samples/experiment/cost.h"
 #include "samples/plan/plan.h"
@@ -73,7 +74,7 @@ double first_ms(const ResolutionSeries& series, const SceneSize& size) { return 
 void measure_cages(const Scene& scene, SceneSize& size, ResolutionSeries& series, ObjectMeshCache& cache) {
   series.base_size = 0.0;
   const glm::dvec3 render_origin = render_origin_of(scene);
-  make_starts(scene, cache);
+  make_places(scene, cache);
   double spared_ms = 0.0;
   const auto start = std::chrono::steady_clock::now();
   for (size_t k = 0; k < scene.objects.size(); ++k) {
